@@ -24,6 +24,8 @@ pub struct LogChannel {
     pub unit: Option<String>,
     /// Number of samples.
     pub samples: usize,
+    /// Why its samples are not numbers; `None` if they are.
+    pub fault: Option<&'static str>,
 }
 
 /// A log of channels.
@@ -34,12 +36,17 @@ pub trait ChannelFile {
     /// Its channels other than times.
     fn channels(&self) -> &[LogChannel];
 
-    /// The samples of a channel; NaN where there is no valid one. `time` is the assigned column of times, for a format
-    /// in which channels may lack times of their own.
+    /// The samples of a channel; NaN where there is no valid one. `time` is the column of times that is assigned to the
+    /// channel `lift`, for a format in which channels may lack times of their own.
     ///
     /// # Errors
     /// The samples cannot be read, or have no times.
-    fn series(&self, channel: usize, time: Option<&Source>) -> Result<Series, CampaignError>;
+    fn series(
+        &self,
+        channel: usize,
+        time: Option<&Source>,
+        lift: Option<usize>,
+    ) -> Result<Series, CampaignError>;
 }
 
 /// Reads a log for a hitch with this linkage.
@@ -54,10 +61,12 @@ pub fn read(
     let own = ColumnSettings::by_own_names();
     let sources = &settings.unwrap_or(&own).sources;
     let time = sources.iter().find(|wanted| wanted.column.name == TIME);
+    let lift = sources.iter().find(|wanted| wanted.column.name == LIFT);
+    let lift = lift.map_or(Ok(None), |wanted| find(file, wanted))?;
     let mut taken: Vec<(&'static str, Series)> = Vec::new();
     for wanted in sources.iter().filter(|wanted| wanted.column.name != TIME) {
         if let Some(channel) = find(file, wanted)? {
-            let series = scaled_series(file, channel, wanted, time, linkage)?;
+            let series = scaled_series(file, channel, wanted, (time, lift), linkage)?;
             taken.push((wanted.column.name, series));
         }
     }
@@ -92,21 +101,20 @@ pub fn read(
 pub fn survey(file: &dyn ChannelFile) -> Vec<LogColumn> {
     let mut columns: Vec<LogColumn> = Vec::new();
     for (index, channel) in file.channels().iter().enumerate() {
-        // Unsupported signals are not offered; the reader reports the reason if one is named.
-        let Ok(series) = file.series(index, None) else {
-            continue;
+        let (values, fault) = match (channel.fault, file.series(index, None, None)) {
+            (Some(fault), _) => (Vec::new(), Some(fault.to_owned())),
+            (None, Ok(series)) => (series.values, None),
+            (None, Err(fault)) => (Vec::new(), Some(fault.what)),
         };
         let known = columns.iter().any(|column| column.name == channel.name);
-        if !known && !series.values.is_empty() {
+        if !known && (fault.is_some() || !values.is_empty()) {
+            let unit = channel.unit.as_deref();
             columns.push(LogColumn {
                 name: channel.name.clone(),
-                unit: channel
-                    .unit
-                    .as_deref()
-                    .map(|unit| spelling(unit).to_owned()),
-                comment: String::new(),
-                values: series.values,
-                is_clock: false,
+                unit: unit.map(|unit| spelling(unit).to_owned()),
+                values,
+                fault,
+                ..LogColumn::default()
             });
         }
     }
@@ -142,13 +150,17 @@ fn scaled_series(
     file: &dyn ChannelFile,
     index: usize,
     wanted: &Source,
-    time: Option<&Source>,
+    (time, lift): (Option<&Source>, Option<usize>),
     linkage: &Linkage,
 ) -> Result<Series, CampaignError> {
     let channel = &file.channels()[index];
     let fault = |(what, mend): (String, String)| file.source().error(what, mend);
+    if let Some(what) = channel.fault {
+        let what = format!("channel {}: {what}", quote(&channel.name));
+        return Err(fault((what, "export it as numbers".to_owned())));
+    }
     let scale = wanted.scale(channel.unit.as_deref()).map_err(fault)?;
-    let mut series = file.series(index, time)?;
+    let mut series = file.series(index, time, lift)?;
     for index in 0..series.values.len() {
         let value = scaled(scale, linkage, series.values[index], wanted.column);
         series.values[index] = value.map_err(|value| {

@@ -27,6 +27,7 @@ mod scale;
 mod series;
 pub mod survey;
 mod table;
+mod time_base;
 
 use std::path::{Path, PathBuf};
 

@@ -97,7 +97,12 @@ impl ChannelFile for MdfFile {
     }
 
     /// The samples of a channel; NaN where marked as invalid.
-    fn series(&self, channel: usize, _time: Option<&Source>) -> Result<Series, CampaignError> {
+    fn series(
+        &self,
+        channel: usize,
+        _time: Option<&Source>,
+        _lift: Option<usize>,
+    ) -> Result<Series, CampaignError> {
         let name = &self.channels[channel].name;
         let fault = |error| unreadable(&self.source, name, &error);
         let [data_group, group, index] = self.places[channel];
@@ -149,13 +154,18 @@ fn channels_of_v4(file: &Mf4File) -> Vec<(LogChannel, [usize; 3])> {
     for (data_group, data) in file.data_groups().iter().enumerate() {
         for (group_index, group) in data.channel_groups.iter().enumerate() {
             for (index, channel) in group.channels.iter().enumerate() {
-                if channel.is_master() || !channel.value_kind().is_numeric() || channel.is_array() {
+                if channel.is_master() {
                     continue;
                 }
                 let found = LogChannel {
                     name: channel.name.clone(),
                     unit: unit(&channel.unit),
                     samples: group.sample_count as usize,
+                    fault: match channel.value_kind().is_numeric() {
+                        false => Some("it has texts, or values converted to texts"),
+                        true if channel.is_array() => Some("it has arrays"),
+                        true => None,
+                    },
                 };
                 channels.push((found, [data_group, group_index, index]));
             }
@@ -175,6 +185,7 @@ fn channels_of_v3(file: &Mdf3File) -> Vec<(LogChannel, [usize; 3])> {
                         name: channel.name.clone(),
                         unit: unit(&channel.unit),
                         samples: group.cycle_count as usize,
+                        fault: None,
                     };
                     (found, [data_group, group_index, index])
                 },

@@ -12,7 +12,7 @@ use crate::table::{Column, OIL_TEMPERATURE, TIME};
 const ZERO_C_K: f64 = 273.15;
 
 /// Alternative spellings of units: of tools, and in German.
-const SPELLINGS: [(&str, &str); 39] = [
+const SPELLINGS: &[(&str, &str)] = &[
     ("°", "deg"),
     ("deg", "deg"),
     ("degree", "deg"),
@@ -44,7 +44,12 @@ const SPELLINGS: [(&str, &str); 39] = [
     ("bar", "bar"),
     ("barg", "bar"),
     ("bar(g)", "bar"),
-    ("bara", "bar"),
+    ("bar(a)", "bara"),
+    ("bar abs", "bara"),
+    ("psi(a)", "psia"),
+    ("psi abs", "psia"),
+    ("kpa(a)", "kPaa"),
+    ("kpa abs", "kPaa"),
     ("kpa", "kPa"),
     ("pa", "Pa"),
     ("psig", "psi"),
@@ -52,10 +57,24 @@ const SPELLINGS: [(&str, &str); 39] = [
     ("sek", "s"),
     ("seconds", "s"),
     ("volt", "V"),
+    ("minute", "min"),
+    ("minutes", "min"),
+    ("minuten", "min"),
+    ("hours", "h"),
+    ("stunden", "h"),
+    ("msec", "ms"),
+    ("millisekunden", "ms"),
+    ("usec", "us"),
+    ("day", "d"),
+    ("days", "d"),
+    ("tage", "d"),
+    ("datenum", "d"),
+    ("percent", "%"),
+    ("prozent", "%"),
 ];
 
 /// Units that formulas do not have, each as a multiple of one that they have.
-const MULTIPLES: [(&str, f64, &str); 10] = [
+const MULTIPLES: &[(&str, f64, &str)] = &[
     ("psi", 6_894.757_293_168, "Pa"),
     ("hPa", 100.0, "Pa"),
     ("mbar", 1e-3, "bar"),
@@ -67,7 +86,13 @@ const MULTIPLES: [(&str, f64, &str); 10] = [
     ("µs", 1e-6, "s"),
     ("ns", 1e-9, "s"),
     ("h", 3_600.0, "s"),
+    ("d", 86_400.0, "s"),
 ];
+
+/// Units of absolute pressures, each with that of the pressure above air.
+const ABSOLUTE: [(&str, &str); 3] = [("bara", "bar"), ("psia", "psi"), ("kPaa", "kPa")];
+/// Pressure of air, bar: the standard atmosphere.
+const AIR_BAR: f64 = 1.013_25;
 
 /// Conversion of a raw value to a value of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,6 +128,12 @@ impl Scale {
             return Ok(Self::ONE);
         }
         let line = |factor: f64, offset: f64| Ok(Self::Line { factor, offset });
+        if let Some(above_air) = above_air(unit).filter(|_| column.unit == "bar") {
+            return match Self::of(above_air, column)? {
+                Self::Line { factor, .. } => line(factor, -AIR_BAR),
+                travel @ Self::Travel { .. } => Ok(travel),
+            };
+        }
         if column.name == OIL_TEMPERATURE {
             match unit {
                 "K" => return line(1.0, -ZERO_C_K),
@@ -118,6 +149,10 @@ impl Scale {
             Some((own, _)) if is_angle(column) && Some(own.dimension) == dimension("m") => {
                 Ok(Self::Travel { metres: own.si })
             }
+            _ if unit == "%" => Err(format!(
+                "{} is in percent, and two points are not given",
+                column.name
+            )),
             _ if unit == "V" => Err(format!(
                 "{} is a voltage, and two points of its sensor are not given",
                 column.name
@@ -147,6 +182,12 @@ impl Scale {
     }
 }
 
+/// The unit above air of a unit of absolute pressures.
+pub fn above_air(unit: &str) -> Option<&'static str> {
+    let found = ABSOLUTE.iter().find(|(absolute, _)| *absolute == unit);
+    found.map(|(_, above_air)| *above_air)
+}
+
 /// Whether a text is a unit of a column's quantity; volts are accepted for all.
 pub fn is_unit_of(unit: &str, column: &Column) -> bool {
     spelling(unit) == "V" || Scale::of(unit, column).is_ok()
@@ -159,7 +200,7 @@ pub fn is_unit(text: &str) -> bool {
         unit,
         "V" | "mV" | "degF" | "%" | "-" | "1" | "iso" | "clock"
     );
-    is_known || (!unit.is_empty() && parsed(unit).is_some())
+    is_known || above_air(unit).is_some() || (!unit.is_empty() && parsed(unit).is_some())
 }
 
 /// A unit as formulas write it.
@@ -231,6 +272,9 @@ mod tests {
             (104.0, "°F", "oil_temperature_c", 40.0),
             (313.15, "K", "oil_temperature_c", 40.0),
             (20.0, "ms", "time_s", 0.02),
+            (0.5, "days", "time_s", 43_200.0),
+            (114.503_774, "psia", "pump_pressure_bar", 6.881_507),
+            (11.013_25, "bar(a)", "pump_pressure_bar", 10.0),
             (79.0, "mm", "rocker_angle_deg", 90.0),
         ] {
             let got = converted(value, unit, name);

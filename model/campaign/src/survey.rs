@@ -8,14 +8,15 @@ use hitch_input::source_file::SourceFile;
 use crate::bus_log::Format;
 use crate::mdf_log::MdfFile;
 use crate::number_log::NumberLog;
-use crate::scale::is_unit_of;
-use crate::table::{COLUMNS, TIME, column};
+use crate::scale::{Scale, above_air, is_unit_of};
+use crate::table::{COLUMNS, TIME, TIMES as TIME_COLUMN, column};
 use crate::{CampaignError, bus_log, channel_log, columns, csv_log, mdf_log};
 
 pub use crate::bus_log::Signals;
+pub use crate::time_base::{is_in, is_time_name, words};
 
 /// A column of a table, or a channel.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct LogColumn {
     /// Its name.
     pub name: String,
@@ -27,13 +28,22 @@ pub struct LogColumn {
     pub values: Vec<f64>,
     /// Whether it contains dates or times of day.
     pub is_clock: bool,
+    /// Name of its column of times, which for one of times is its own; `None` if there is none, or it has its own times.
+    pub times: Option<String>,
+    /// Why it cannot be used; `None` if it can.
+    pub fault: Option<String>,
 }
 
 /// Kind of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Survey {
-    /// A table with these columns; one has to contain times.
-    Table(Vec<LogColumn>),
+    /// A table.
+    Table {
+        /// Its columns; one has to contain times.
+        columns: Vec<LogColumn>,
+        /// What was assumed about its shape and times, one line each.
+        notes: Vec<String>,
+    },
     /// A table with the project's own names.
     Own,
     /// Channels with their own times.
@@ -92,6 +102,21 @@ pub fn run_columns() -> impl Iterator<Item = (&'static str, &'static str)> {
 #[must_use]
 pub fn fits(unit: &str, name: &str) -> bool {
     column(name).is_some_and(|column| is_unit_of(unit, column))
+}
+
+/// Whether a unit is one of absolute pressures, from which the pressure of air is subtracted.
+#[must_use]
+pub fn is_absolute(unit: &str) -> bool {
+    above_air(unit).is_some()
+}
+
+/// Size of a unit of time, s; 1 for one that is not known.
+#[must_use]
+pub fn unit_size_s(unit: &str) -> f64 {
+    match Scale::of(unit, &TIME_COLUMN) {
+        Ok(Scale::Line { factor, .. }) => factor,
+        _ => 1.0,
+    }
 }
 
 /// The usual units of a column of a run, the one of the format first.

@@ -1,8 +1,11 @@
 //! Assigns a log's columns to a run's columns: by the user's mapping, else by names, units and values.
 
-use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, run_columns};
+use hitch_campaign::survey::{
+    LogColumn, TIMES, check_source, fits, is_absolute, is_in, run_columns, words,
+};
 
-use super::words::{CHANNELS, Words, is_time};
+use super::times::time;
+use super::words::{CHANNELS, Words};
 
 /// Largest plausible angle in radians.
 const MOST_RAD: f64 = 3.2;
@@ -42,6 +45,8 @@ pub struct Taken {
 pub struct Mapping {
     /// In the order of a run's columns.
     pub taken: Vec<Taken>,
+    /// What was assumed, and columns of a known quantity that were left out; one line each.
+    pub notes: Vec<String>,
 }
 
 /// A column that could not be determined.
@@ -89,8 +94,20 @@ impl Mapping {
         let mut mapping = Self::default();
         let mut untold: Option<Untold> = None;
         let mut used: Vec<String> = Vec::new();
+        let mut left_out: Vec<&str> = Vec::new();
         for (channel, source) in named {
-            match mapping.name(channel, source, "given by --map") {
+            if source.is_empty() {
+                left_out.push(channel);
+                continue;
+            }
+            let named = mapping.name(channel, source, "given by --map");
+            let named = named.and_then(|name| {
+                let fault = (kind != Kind::Signals)
+                    .then(|| not_usable(columns, &name))
+                    .flatten();
+                fault.map_or(Ok(name), Err)
+            });
+            match named {
                 Ok(name) => used.push(name),
                 Err(what) => {
                     untold.get_or_insert(Untold {
@@ -100,19 +117,8 @@ impl Mapping {
                 }
             }
         }
-        if kind == Kind::Table && !mapping.has(TIMES) {
-            match time(columns) {
-                Some((column, taken)) => {
-                    used.push(column.name.clone());
-                    mapping.taken.push(taken);
-                }
-                None => {
-                    untold.get_or_insert_with(|| no_times(columns));
-                }
-            }
-        }
         for words in &CHANNELS {
-            if mapping.has(words.channel) {
+            if mapping.has(words.channel) || left_out.contains(&words.channel) {
                 continue;
             }
             let free = columns.iter().filter(|column| !used.contains(&column.name));
@@ -127,6 +133,18 @@ impl Mapping {
                 }
             }
         }
+        if kind == Kind::Table && !mapping.has(TIMES) {
+            match time(columns, mapping.source_of(columns, "lift_current_a")) {
+                Ok(Some(taken)) => mapping.taken.push(taken),
+                Err(implausible) => {
+                    untold.get_or_insert(implausible);
+                }
+                Ok(None) => {
+                    untold.get_or_insert_with(|| no_times(columns));
+                }
+            }
+        }
+        mapping.note(columns, &left_out);
         let complete = mapping.check(columns);
         mapping.order();
         (mapping, untold.or(complete.err()))
@@ -185,6 +203,46 @@ impl Mapping {
             .sort_by_key(|taken| run_columns().position(|(name, _)| name == taken.channel));
     }
 
+    /// Notes the columns of a known quantity that are not used, and pressures above vacuum.
+    fn note(&mut self, columns: &[LogColumn], left_out: &[&str]) {
+        let used: Vec<&str> = self
+            .taken
+            .iter()
+            .filter_map(|taken| self.source_of(columns, taken.channel))
+            .map(|column| column.name.as_str())
+            .collect();
+        let mut notes = Vec::new();
+        for column in columns
+            .iter()
+            .filter(|column| !used.contains(&&*column.name))
+        {
+            let known = CHANNELS.iter().find(|words| {
+                let is_missing = !self.has(words.channel) && !left_out.contains(&words.channel);
+                (is_missing || column.fault.is_some()) && words.names(column)
+            });
+            let reason = known.and_then(|words| why_not(words.channel, column));
+            notes.extend(reason.map(|reason| format!("left out: \"{}\": {reason}", column.name)));
+        }
+        for taken in &self.taken {
+            let column = self.source_of(columns, taken.channel);
+            let unit = column.and_then(|column| column.unit.as_deref());
+            if unit.is_some_and(is_absolute) {
+                notes.push(format!(
+                    "assumed: {} is above vacuum; 1.013 bar of air are subtracted",
+                    taken.channel
+                ));
+            }
+        }
+        self.notes = notes;
+    }
+
+    /// The column of the log that is assigned to a column of the run.
+    fn source_of<'c>(&self, columns: &'c [LogColumn], channel: &str) -> Option<&'c LogColumn> {
+        let taken = self.taken.iter().find(|taken| taken.channel == channel)?;
+        let (name, _) = check_source(channel, &taken.source).ok()?;
+        columns.iter().find(|column| column.name == name)
+    }
+
     fn has(&self, channel: &str) -> bool {
         self.taken.iter().any(|taken| taken.channel == channel)
     }
@@ -229,54 +287,65 @@ fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
     }
 }
 
-/// The column of the times.
-fn time(columns: &[LogColumn]) -> Option<(&LogColumn, Taken)> {
-    let taken = |source: String, reason: &str, is_assumed| Taken {
-        channel: TIMES,
-        source,
-        reason: reason.to_owned(),
-        is_assumed,
+/// Why a column that the user names cannot be used.
+fn not_usable(columns: &[LogColumn], name: &str) -> Option<String> {
+    let plain = |column: &LogColumn| {
+        let number = column
+            .name
+            .rsplit_once(" #")
+            .map(|(plain, _)| plain.to_owned());
+        number.as_deref() == Some(name)
     };
-    let rises = |column: &&LogColumn| {
-        let known: Vec<f64> = column
-            .values
-            .iter()
-            .copied()
-            .filter(|value| !value.is_nan())
-            .collect();
-        known.len() > 1 && known.windows(2).all(|pair| pair[1] > pair[0])
-    };
-    let clock = columns.iter().find(|column| column.is_clock);
-    let named = columns
-        .iter()
-        .filter(rises)
-        .find(|column| is_time(&column.name));
-    let seconds = || {
-        columns
-            .iter()
-            .filter(rises)
-            .find(|column| unit_of_time(column).is_some())
-    };
-    if let Some(column) = named.or_else(seconds) {
-        let source = match unit_of_time(column) {
-            Some(unit) => format!("{}:{unit}", column.name),
-            // Without a unit it is in seconds, or since an epoch that the reader determines by magnitude.
-            None => column.name.clone(),
-        };
-        let is_assumed = unit_of_time(column).is_none();
-        return Some((column, taken(source, "rises from row to row", is_assumed)));
+    if let Some(column) = columns.iter().find(|column| column.name == name) {
+        return column.fault.clone();
     }
-    clock.map(|column| {
-        let source = column.name.clone();
-        (column, taken(source, "dates or times of day", false))
-    })
+    if columns.iter().any(plain) {
+        return Some(format!(
+            "several columns have this name; write {name} #1 or {name} #2"
+        ));
+    }
+    let (known, unit) = name.rsplit_once(':')?;
+    let is_known = columns.iter().any(|column| column.name == known.trim());
+    is_known.then(|| format!("\"{unit}\" is not a unit of it"))
 }
 
-fn unit_of_time(column: &LogColumn) -> Option<&str> {
-    column
-        .unit
-        .as_deref()
-        .filter(|unit| *unit != "V" && fits(unit, TIMES))
+/// Why a column of a quantity was not proposed; `None` for an unknown reason.
+fn why_not(channel: &str, column: &LogColumn) -> Option<String> {
+    if let Some(fault) = &column.fault {
+        return Some(fault.clone());
+    }
+    let has_numbers = column.values.iter().any(|value| value.is_finite());
+    match column.unit.as_deref() {
+        _ if !has_numbers && !column.values.is_empty() => Some("it contains no numbers".to_owned()),
+        Some(unit @ ("%" | "V")) => Some(format!(
+            "it is in {unit}; give two points, as in --map {channel}=\"{}:{unit} 0=50 100=120\"",
+            column.name
+        )),
+        Some(unit) if !fits(unit, channel) => Some(format!("{unit} is not a unit of {channel}")),
+        _ => Some(format!(
+            "several columns may be {channel}; assign one with --map {channel}=\"{}\"",
+            column.name
+        )),
+    }
+}
+
+/// Whether a column is one of a cylinder's or hitch's position, whose unit cannot be assumed.
+fn is_position(name: &str) -> bool {
+    const ANGLES: [&str; 4] = ["winkel", "angle", "phi", "rocker"];
+    let words = words(name);
+    !ANGLES.iter().any(|known| is_in(known, &words))
+}
+
+/// Whether values run within 0 to 100 and rest on an end: a percentage.
+fn is_percentage(values: &[f64]) -> bool {
+    const REST: usize = 5;
+    let known: Vec<f64> = values
+        .iter()
+        .copied()
+        .filter(|value| value.is_finite())
+        .collect();
+    let at = |end: f64| known.iter().filter(|value| **value == end).count();
+    known.iter().all(|value| (0.0..=100.0).contains(value)) && at(100.0).max(at(0.0)) >= REST
 }
 
 /// Assignment of a log's column.
@@ -312,6 +381,22 @@ fn proposal<'c>(
         [first, ..] => first,
     };
     let column = best.column;
+    let is_implausible = column.unit.is_none()
+        && words.channel == "rocker_angle_deg"
+        && (is_position(&column.name) || is_percentage(&column.values));
+    if is_implausible && kind != Kind::Signals {
+        return Err(Untold {
+            what: format!(
+                "\"{}\" has no unit: it may be an angle, a percentage or a travel",
+                column.name
+            ),
+            mend: format!(
+                "give it, as in --map {0}=\"{1}:deg\", in percent with two points --map {0}=\"{1}:% 0=50 100=120\", \
+                 or leave it out with --map {0}=",
+                words.channel, column.name
+            ),
+        });
+    }
     let Some((unit, by_unit)) = unit(words.channel, column) else {
         return Ok(None);
     };
@@ -331,7 +416,12 @@ fn proposal<'c>(
 
 fn candidate<'c>(words: &Words, column: &'c LogColumn) -> Option<Candidate<'c>> {
     let is_empty = column.values.iter().all(|value| value.is_nan());
-    if column.is_clock || (is_empty && !column.values.is_empty()) {
+    let is_time = column.times.as_ref() == Some(&column.name);
+    if column.is_clock
+        || is_time
+        || column.fault.is_some()
+        || (is_empty && !column.values.is_empty())
+    {
         return None;
     }
     let by_unit = match column.unit.as_deref() {

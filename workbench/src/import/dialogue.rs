@@ -23,6 +23,7 @@ pub fn agreed(
         heading,
         kind,
         columns,
+        ..
     } = found;
     let asks = may_ask && io::stdin().is_terminal() && io::stdout().is_terminal();
     let mut named = named.to_vec();
@@ -32,7 +33,7 @@ pub fn agreed(
     loop {
         let proposal = Mapping::propose(columns, *kind, &named);
         match &proposal {
-            Ok(mapping) => output::print(&shown(heading, columns, mapping))?,
+            Ok(mapping) => output::print(&shown(found, mapping))?,
             Err(Untold { what, .. }) if asks => output::print(&format!("{what}\n"))?,
             Err(Untold { what, mend }) => {
                 return Err(Error::Usage(format!("{heading}: {what}; {mend}")));
@@ -126,17 +127,20 @@ fn understood(line: &str, columns: &[LogColumn]) -> Result<Answer, String> {
 }
 
 /// The proposal as a table.
-fn shown(heading: &str, columns: &[LogColumn], mapping: &Mapping) -> String {
+fn shown(found: &Columns, mapping: &Mapping) -> String {
     let widths = mapping
         .taken
         .iter()
         .map(|taken| taken.source.chars().count());
     let width = widths.max().unwrap_or(0);
-    let mut text = wrapped(&format!("{heading}:")) + "\n";
+    let mut text = wrapped(&format!("{}:", found.heading)) + "\n";
     for taken in &mapping.taken {
         text += &line(taken, width);
     }
-    match columns.len().saturating_sub(mapping.taken.len()) {
+    for note in found.notes.iter().chain(&mapping.notes) {
+        text += &(indented(note, 2) + "\n");
+    }
+    match found.columns.len().saturating_sub(mapping.taken.len()) {
         0 => text,
         1 => text + "  1 other column is ignored\n",
         others => text + &format!("  {others} other columns are ignored\n"),
@@ -185,10 +189,7 @@ mod tests {
     fn answers_are_understood_or_said_to_be_none() {
         let columns = [LogColumn {
             name: "I1".to_owned(),
-            unit: None,
-            comment: String::new(),
-            values: Vec::new(),
-            is_clock: false,
+            ..LogColumn::default()
         }];
         let said = |line| understood(line, &columns);
         assert!(matches!(said(""), Ok(Answer::Take)));

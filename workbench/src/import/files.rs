@@ -27,6 +27,8 @@ pub struct Columns {
     pub kind: Kind,
     /// The columns.
     pub columns: Vec<LogColumn>,
+    /// What was assumed about the shape and the times of a table, one line each.
+    pub notes: Vec<String>,
 }
 
 impl Files {
@@ -86,6 +88,7 @@ impl Files {
             heading,
             kind: Kind::Signals,
             columns,
+            notes: Vec::new(),
         }))
     }
 
@@ -106,14 +109,15 @@ impl Files {
 /// # Errors
 /// If the log cannot be read.
 pub fn columns(log: &Path) -> Result<Option<Columns>, Error> {
-    let (columns, kind) = match Survey::of(log)? {
+    let (columns, notes, kind) = match Survey::of(log)? {
         Survey::Own | Survey::Bus => return Ok(None),
-        Survey::Table(columns) => (columns, Kind::Table),
-        Survey::Channels(columns) => (columns, Kind::Channels),
+        Survey::Table { columns, notes } => (columns, notes, Kind::Table),
+        Survey::Channels(columns) => (columns, Vec::new(), Kind::Channels),
     };
     Ok(Some(Columns {
         heading: log.display().to_string(),
         kind,
         columns,
+        notes,
     }))
 }

@@ -7,6 +7,7 @@ pub mod cuts;
 pub mod dialogue;
 pub mod files;
 pub mod manifest;
+pub mod times;
 pub mod words;
 
 pub use columns::{Kind, Mapping, Taken, Untold};

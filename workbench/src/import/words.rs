@@ -1,5 +1,7 @@
 //! Column names in German and English.
 
+use hitch_campaign::survey::{LogColumn, is_in, words};
+
 /// Words in the name of a log's column that support or exclude a run's column.
 #[derive(Debug)]
 pub struct Words {
@@ -137,19 +139,6 @@ pub static CHANNELS: [Words; 7] = [
     },
 ];
 
-/// Words of the times.
-const TIMES: [&str; 9] = [
-    "zeit",
-    "time",
-    "timestamp",
-    "zeitstempel",
-    "uhrzeit",
-    "datum",
-    "date",
-    "sec",
-    "t",
-];
-
 impl Words {
     /// Score of a name: quantity 1, channel 2.
     #[must_use]
@@ -163,44 +152,18 @@ impl Words {
         score - 4 * i32::from(has(&NO_MEASUREMENT))
     }
 
+    /// Whether name or comment of a column identifies it, whatever its unit.
+    #[must_use]
+    pub fn names(&self, column: &LogColumn) -> bool {
+        let least = if self.is_only_one() { 1 } else { 2 };
+        self.score(&column.name).max(self.score(&column.comment)) >= least
+    }
+
     /// Whether the quantity has only one channel.
     #[must_use]
     pub fn is_only_one(&self) -> bool {
         self.which.is_empty()
     }
-}
-
-/// Whether a name denotes times.
-#[must_use]
-pub fn is_time(name: &str) -> bool {
-    let words = words(name);
-    TIMES.iter().any(|known| is_in(known, &words))
-}
-
-/// The words of a name in lower case; `LiftCurrent` has two.
-fn words(name: &str) -> Vec<String> {
-    let mut words = vec![String::new()];
-    let mut was_small = false;
-    for letter in name.chars() {
-        let begins = !letter.is_alphabetic() || (letter.is_uppercase() && was_small);
-        was_small = letter.is_lowercase();
-        if begins {
-            words.push(String::new());
-        }
-        if let (true, Some(word)) = (letter.is_alphabetic(), words.last_mut()) {
-            word.extend(letter.to_lowercase());
-        }
-    }
-    words.retain(|word| !word.is_empty());
-    words
-}
-
-/// Whether a known word is a word of the name; a long one may also be part of a word (German compounds).
-fn is_in(known: &str, words: &[String]) -> bool {
-    /// Minimum length of a partial match; shorter words occur in many others.
-    const LONG: usize = 5;
-    let is_part = |word: &String| known.len() >= LONG && word.contains(known);
-    words.iter().any(|word| word == known || is_part(word))
 }
 
 #[cfg(test)]
@@ -232,7 +195,6 @@ mod tests {
         ] {
             assert_eq!(best(name), expected, "{name}");
         }
-        assert!(is_time("Zeit") && is_time("t") && is_time("Timestamp") && !is_time("Temperatur"));
     }
 
     #[test]

@@ -69,8 +69,7 @@ pub fn signals(
                     name: format!("{}.{}", message.name, signal.name),
                     unit: Some(spelling(&signal.unit).to_owned()),
                     comment: description.comment(message, &signal.name).to_owned(),
-                    values: Vec::new(),
-                    is_clock: false,
+                    ..LogColumn::default()
                 });
             }
         }

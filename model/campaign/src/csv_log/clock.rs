@@ -69,6 +69,16 @@ impl Times {
         }
     }
 
+    /// How much later the first of these times is than that of others, s; zero unless both are absolute.
+    pub fn later_than_s(&self, other: &Self) -> f64 {
+        let first_s = |times: &Self| match times.begin? {
+            Begin::Number { first, unit_s } => (first != 0.0).then_some(first * unit_s),
+            Begin::Clock { first_s } => Some(first_s),
+        };
+        let both = first_s(self).zip(first_s(other));
+        both.map_or(0.0, |(own_s, other_s)| own_s - other_s)
+    }
+
     fn of_clock(&mut self, time: Instant) -> Option<f64> {
         let time_s = match time.day {
             Some(day) => day * DAY_S + time.of_day_s,

@@ -1,16 +1,17 @@
 //! The dialect of a text table: separator, position of the header, decimal mark.
 
+use std::collections::HashSet;
+
 use csv::StringRecord;
 
 use crate::csv_log::clock::is_clock;
 use crate::scale::is_unit;
+use crate::time_base::is_time_name;
 
 /// Possible separators, by priority: the comma, which may be a decimal mark, is last.
 pub const MARKS: [u8; 4] = [b'\t', b';', b'|', b','];
 /// Number of rows that are searched for a header.
 const HEADER_WITHIN: usize = 200;
-/// Number of rows that are examined for the decimal mark.
-const EXAMINED_ROWS: usize = 1_000;
 
 /// A cell of a header.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,6 +33,8 @@ pub struct Header {
     pub byte: usize,
     /// Its cells.
     pub cells: Vec<HeaderCell>,
+    /// Number of its cells, with those behind the last name.
+    pub width: usize,
     /// Byte offset of the first sample.
     pub data_byte: usize,
 }
@@ -78,7 +81,16 @@ impl HeaderCell {
 
     /// Whether it is the column with this name.
     pub fn is(&self, name: &str) -> bool {
-        self.text == name || self.name == name
+        self.text == name || self.name == name || self.plain_name() == name
+    }
+
+    /// Its name without the number that tells it from others.
+    fn plain_name(&self) -> &str {
+        let number = self
+            .name
+            .rsplit_once(" #")
+            .filter(|_| !self.text.contains(" #"));
+        number.map_or(&self.name, |(name, _)| name)
     }
 }
 
@@ -102,7 +114,8 @@ impl Header {
     /// The row with the most of `names`; `None` if there is none.
     pub fn with_names(text: &str, names: &[&str]) -> Option<Self> {
         let found = |row: &StringRecord| {
-            let cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
+            let mut cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
+            tell_apart(&mut cells);
             let is_there = |name: &&&str| cells.iter().any(|cell| cell.is(name));
             names.iter().filter(is_there).count()
         };
@@ -124,35 +137,46 @@ impl Header {
             let rows: Vec<(usize, StringRecord)> =
                 rows(text, 0, mark).take(HEADER_WITHIN).collect();
             let width = usual_width(&rows)?;
-            let is_sample = |row: &StringRecord| {
-                let filled: Vec<&str> = row.iter().filter(|cell| !cell.is_empty()).collect();
-                let values = filled.iter().filter(|cell| is_value(cell)).count();
-                row.len() >= width && filled.len() > 1 && 2 * values > filled.len()
-            };
-            let first = rows.iter().position(|(_, row)| is_sample(row))?;
-            // A row of units or comments may be between them.
-            let is_header =
-                |row: &StringRecord| row.len() >= 2 && !is_units(row) && row.len() + 1 >= width;
-            let (byte, header) = rows[..first].iter().rev().find(|(_, row)| is_header(row))?;
+            let first = rows
+                .iter()
+                .position(|(_, row)| row.len() >= width && is_sample(row))?;
+            let above = rows[..first].iter().rev();
+            let possible = above.filter(|(_, row)| {
+                let is_remark = row.iter().next().is_some_and(|cell| cell.starts_with('#'));
+                row.len() >= 2 && !is_units(row) && row.len() + 1 >= width && !is_remark
+            });
+            // Rows of units, comments and settings may be between them; of equal rows the uppermost has the names.
+            let (byte, header) = possible.max_by_key(|(_, row)| names_in(row))?;
             Some(Self::at(text, mark, *byte, header))
         })
     }
 
     fn at(text: &str, mark: u8, byte: usize, row: &StringRecord) -> Self {
         let mut cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
-        let mut below = rows(text, byte, mark).skip(1).take(4).peekable();
+        let mut below = rows(text, byte, mark)
+            .skip(1)
+            .take(HEADER_WITHIN)
+            .peekable();
         while let Some((_, row)) = below.next_if(|(_, row)| !holds_samples(row)) {
-            for (cell, unit) in cells.iter_mut().zip(row.iter()) {
-                let unit = unit.trim_matches(['[', ']', '(', ')', '{', '}']).trim();
+            // A keyword may precede the units of a header that has none.
+            let skipped = match row.len() == cells.len() + 1 && is_units(&row) {
+                true => 1,
+                false if row.len() > cells.len() && !ends_empty(&row, cells.len()) => continue,
+                false => 0,
+            };
+            for (cell, unit) in cells.iter_mut().zip(row.iter().skip(skipped)) {
+                let unit = bare(unit);
                 if cell.unit.is_none() && is_unit(unit) {
                     cell.unit = Some(unit.to_owned());
                 }
             }
         }
+        tell_apart(&mut cells);
         let data_byte = below.next().map_or(text.len(), |(byte, _)| byte);
         Self {
             mark,
             byte,
+            width: cells.len(),
             cells,
             data_byte,
         }
@@ -170,15 +194,55 @@ fn holds_samples(row: &StringRecord) -> bool {
     row.iter().any(is_value)
 }
 
+/// Whether a row contains mostly numbers and times.
+pub fn is_sample(row: &StringRecord) -> bool {
+    let filled: Vec<&str> = row.iter().filter(|cell| !cell.is_empty()).collect();
+    let values = filled.iter().filter(|cell| is_value(cell)).count();
+    filled.len() > 1 && 2 * values > filled.len()
+}
+
 fn is_value(cell: &str) -> bool {
     Decimals::ANY.number(cell).is_some() || is_clock(cell)
 }
 
-/// Whether a row contains only units.
+/// Whether a row contains only units, possibly behind a keyword.
 fn is_units(row: &StringRecord) -> bool {
     let mut filled = row.iter().filter(|cell| !cell.is_empty()).peekable();
-    let bare = |cell: &str| is_unit(cell.trim_matches(['[', ']', '(', ')', '{', '}']));
-    filled.peek().is_some() && filled.all(bare)
+    let is_keyword = filled.peek().is_some_and(|first| {
+        let first = first.to_lowercase();
+        first.contains("unit") || first.contains("einheit")
+    });
+    let mut units = filled.skip(usize::from(is_keyword)).peekable();
+    units.peek().is_some() && units.all(|cell| is_unit(bare(cell)))
+}
+
+/// A text without brackets around it.
+fn bare(text: &str) -> &str {
+    let is_bracket = |c| matches!(c, '[' | ']' | '(' | ')' | '{' | '}');
+    text.trim_matches(is_bracket).trim()
+}
+
+/// Whether all cells from `index` on are empty.
+fn ends_empty(row: &StringRecord, index: usize) -> bool {
+    row.iter().skip(index).all(str::is_empty)
+}
+
+/// The number of different names that a row may contain.
+fn names_in(row: &StringRecord) -> usize {
+    let is_name = |cell: &&str| cell.chars().any(char::is_alphabetic) && !cell.contains('=');
+    let names: HashSet<&str> = row.iter().filter(is_name).collect();
+    names.len() + usize::from(names.iter().any(|name| is_time_name(name)))
+}
+
+/// Numbers the cells with equal names: `Druck #1`, `Druck #2`.
+fn tell_apart(cells: &mut [HeaderCell]) {
+    let names: Vec<String> = cells.iter().map(|cell| cell.name.clone()).collect();
+    for (index, cell) in cells.iter_mut().enumerate() {
+        let equal = |part: &[String]| part.iter().filter(|name| **name == cell.name).count();
+        if !cell.name.is_empty() && equal(&names) > 1 {
+            cell.name = format!("{} #{}", cell.name, equal(&names[..=index]));
+        }
+    }
 }
 
 /// The number of cells of most rows, if it is at least two and most rows agree.
@@ -194,13 +258,19 @@ fn usual_width(rows: &[(usize, StringRecord)]) -> Option<usize> {
 pub struct Decimals {
     point: bool,
     comma: bool,
+    /// Separator of thousands, if there is one.
+    thousands: Option<char>,
 }
+
+/// Separators of thousands.
+const THOUSANDS: [char; 6] = ['.', ',', ' ', '\'', '\u{a0}', '\u{202f}'];
 
 impl Decimals {
     /// Either mark.
     pub const ANY: Self = Self {
         point: true,
         comma: true,
+        thousands: None,
     };
 
     /// Determined from the cells of the first rows.
@@ -214,25 +284,54 @@ impl Decimals {
         Self {
             point: points >= commas,
             comma: commas > points || points == 0,
+            thousands: None,
         }
     }
 
-    /// Determined from the first rows of some columns of a table.
-    pub fn in_columns(text: &str, header: &Header, cells: &[usize]) -> Self {
-        let rows: Vec<StringRecord> = rows(text, header.data_byte, header.mark)
-            .take(EXAMINED_ROWS)
-            .map(|(_, row)| row)
-            .collect();
-        Self::of(
-            rows.iter()
-                .flat_map(|row| cells.iter().filter_map(|&cell| row.get(cell))),
-        )
+    /// Those of a column, whose thousands may be separated; the separator, if so.
+    ///
+    /// A separator is one if each of them precedes three digits, and numbers below a thousand have none.
+    pub fn of_column(self, cells: &[&str]) -> (Self, Option<char>) {
+        let found = THOUSANDS.into_iter().find(|&mark| {
+            let (marked, plain): (Vec<&str>, Vec<&str>) =
+                cells.iter().partition(|cell| cell.contains(mark));
+            let is_below = |cell: &&str| {
+                let whole = cell.split(['.', ',']).next().unwrap_or_default();
+                whole.trim_start_matches('-').len() <= 3
+            };
+            // Where the other mark is the decimal one, or a gap separates, there is no doubt.
+            let is_sure = match mark {
+                '.' => !self.point,
+                ',' => !self.comma,
+                _ => true,
+            };
+            !marked.is_empty()
+                && marked.iter().all(|cell| is_grouped(cell, mark))
+                && plain.iter().all(is_below)
+                && (is_sure || plain.iter().any(|cell| self.number(cell).is_some()))
+        });
+        let decimals = Self {
+            point: self.point || found == Some(','),
+            comma: self.comma || found == Some('.'),
+            thousands: found,
+        };
+        (decimals, found)
     }
 
     /// The number in a cell, possibly infinite; `None` without digits.
     pub fn number(self, cell: &str) -> Option<f64> {
         if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
             return None;
+        }
+        if let Some(mark) = self.thousands {
+            let plain = cell.replace(mark, "");
+            let is_right = !cell.contains(mark) || is_grouped(cell, mark);
+            return Self {
+                thousands: None,
+                ..self
+            }
+            .number(&plain)
+            .filter(|_| is_right);
         }
         match (cell.contains(','), cell.contains('.')) {
             (true, false) if self.comma => cell.replacen(',', ".", 1).parse().ok(),
@@ -241,6 +340,25 @@ impl Decimals {
             _ => None,
         }
     }
+}
+
+/// Whether a number has a mark before each three digits of its whole part, as in `1.234.567` and `1,234.5`.
+fn is_grouped(cell: &str, mark: char) -> bool {
+    let cell = cell.trim_start_matches(['-', '+']);
+    let whole = match mark {
+        '.' => cell.split(',').next(),
+        ',' => cell.split('.').next(),
+        _ => cell.split(['.', ',']).next(),
+    };
+    let mut groups = whole.unwrap_or_default().split(mark);
+    let is_digits = |group: &str| group.bytes().all(|byte| byte.is_ascii_digit());
+    let first = groups.next().unwrap_or_default();
+    let mut rest = groups.peekable();
+    (1..=3).contains(&first.len())
+        && is_digits(first)
+        && !first.starts_with('0')
+        && rest.peek().is_some()
+        && rest.all(|group| group.len() == 3 && is_digits(group))
 }
 
 #[cfg(test)]
@@ -282,6 +400,13 @@ mod tests {
         assert_eq!(of(&["1,5"]).number("1.234"), None);
         assert_eq!(Decimals::ANY.number("1.234,5"), None);
         assert_eq!(Decimals::ANY.number("inf"), None);
+        let thousands = |cells: &[&str]| of(cells).of_column(cells).0.number("1,499");
+        assert_eq!(thousands(&["0", "2", "1,499", "1,500"]), Some(1_499.0));
+        assert_eq!(thousands(&["0", "2", "1,499", "1,5"]), Some(1.499));
+        assert_eq!(thousands(&["0,002", "0", "1,499"]), Some(1.499));
+        assert_eq!(thousands(&["1,499", "1,500"]), Some(1.499));
+        let german = Decimals::of(["1,5"].into_iter()).of_column(&["1.234,5", "0,5"]);
+        assert_eq!(german.0.number("1.234,5"), Some(1_234.5));
     }
 
     #[test]

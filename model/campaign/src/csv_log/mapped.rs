@@ -1,8 +1,7 @@
-//! Reads any table, mapped by `[columns]`: its own names, units and times; other columns are ignored.
+//! Reads any table, mapped by `[columns]`: its own names, units and times, each column at its own rate.
 
 use std::sync::Arc;
 
-use csv::StringRecord;
 use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
@@ -10,110 +9,74 @@ use hitch_plant::Linkage;
 use crate::CampaignError;
 use crate::columns::{ColumnSettings, Source, offer_columns};
 use crate::csv_log::clock::Times;
-use crate::csv_log::dialect::{Decimals, Header, rows};
+use crate::csv_log::layout::{Layout, Row};
 use crate::scale::{Scale, is_time};
-use crate::table::{Cells, Column, Samples, TIME, Table, cell_error};
+use crate::series::{Series, values};
+use crate::table::{Cells, Column, LIFT, Samples, TIME, TIMES, Table};
+use crate::time_base::base_of;
 
 /// A mapped column.
 struct MappedColumn {
     column: &'static Column,
     /// Its name in the log.
     name: String,
-    cell: usize,
+    index: usize,
     scale: Scale,
+    /// Index of its times among those that are read.
+    times: usize,
+    values: Vec<f64>,
 }
 
-/// Reads the table below `header`, for a hitch with this linkage.
+/// A column of times.
+struct TimeColumn {
+    index: usize,
+    times: Times,
+    times_s: Vec<f64>,
+    /// Byte offset of each row in the file.
+    bytes: Vec<usize>,
+}
+
+/// The rows read so far.
+struct Reader<'a> {
+    layout: &'a Layout<'a>,
+    linkage: &'a Linkage,
+    /// The assigned times first.
+    times: Vec<TimeColumn>,
+    columns: Vec<MappedColumn>,
+}
+
+/// Reads the table of a layout, for a hitch with this linkage.
 ///
 /// # Errors
 /// The first fault, with line and column.
 pub fn read(
     source: &Arc<SourceFile>,
-    header: &Header,
+    layout: &Layout<'_>,
     settings: &ColumnSettings,
     linkage: &Linkage,
 ) -> Result<Table, CampaignError> {
-    let (time, taken) = taken(source, header, settings)?;
-    let cells: Vec<usize> = taken.iter().map(|taken| taken.cell).collect();
-    let mut reader = Reader {
-        source,
-        header,
-        decimals: Decimals::in_columns(&source.text, header, &cells),
-        times: Times::new(time.1),
-        time_cell: time.0,
-        taken: &taken,
-        linkage,
-        times_s: Vec::new(),
-        values: vec![Vec::new(); taken.len()],
-        bytes: Vec::new(),
-    };
-    // Text after the last sample and an incomplete last row are accepted.
-    let mut fault = None;
-    for (byte, row) in rows(&source.text, header.data_byte, header.mark) {
-        if row.iter().all(str::is_empty) {
-            continue;
-        }
-        if let Some(fault) = fault.take() {
-            return Err(fault);
-        }
-        fault = reader.push(byte, &row)?;
-    }
-    match fault {
-        Some(fault) if reader.bytes.is_empty() => Err(fault),
-        _ => reader.table(),
-    }
-}
-
-/// The time column with its scale, and the other columns.
-type Found = ((usize, Option<Scale>), Vec<MappedColumn>);
-
-fn taken(
-    source: &SourceFile,
-    header: &Header,
-    settings: &ColumnSettings,
-) -> Result<Found, CampaignError> {
-    let mut time = None;
-    let mut taken = Vec::new();
-    for wanted in &settings.sources {
-        let Some(cell) = cell_of(source, header, wanted)? else {
-            continue;
-        };
-        let logged = header.cells[cell].unit.as_deref();
-        if is_time(wanted.column) {
-            time = Some((cell, wanted.scale(logged).ok()));
-            continue;
-        }
-        let fault =
-            |(what, mend)| cell_error(source, header.byte, (cell, header.mark.into()), what, mend);
-        taken.push(MappedColumn {
-            column: wanted.column,
-            name: wanted.name.clone(),
-            cell,
-            scale: wanted.scale(logged).map_err(fault)?,
-        });
-    }
-    let time = time.ok_or_else(|| {
-        let what = format!("no column is assigned to {TIME}");
-        let mend = format!("assign it under [columns]: {TIME} = \"Name:s\"");
-        source.error_at(header.byte, what, mend)
-    })?;
-    Ok((time, taken))
+    let mut reader = Reader::new(source, layout, settings, linkage)?;
+    layout.each_row(|row| reader.push(row))?;
+    reader.table(source)
 }
 
 /// Index of a column; `None` if it is missing and optional.
-fn cell_of(
+fn index_of(
     source: &SourceFile,
-    header: &Header,
+    layout: &Layout<'_>,
     wanted: &Source,
 ) -> Result<Option<usize>, CampaignError> {
-    let mut cells = (0..header.cells.len()).filter(|&cell| header.cells[cell].is(&wanted.name));
-    match (cells.next(), cells.next()) {
-        (Some(cell), None) => Ok(Some(cell)),
-        (Some(_), Some(second)) => {
+    let cells = &layout.header.cells;
+    if let Some(exact) = cells.iter().position(|cell| cell.name == wanted.name) {
+        return Ok(Some(exact));
+    }
+    let mut found = (0..cells.len()).filter(|&index| cells[index].is(&wanted.name));
+    match (found.next(), found.next()) {
+        (Some(index), None) => Ok(Some(index)),
+        (Some(first), Some(second)) => {
             let what = format!("column {} is duplicated", quote(&wanted.name));
-            let place = (second, header.mark.into());
-            let mend = "rename one of the two";
-            Err(cell_error(source, header.byte, place, what, mend))
+            let mend = format!("assign {} or {}", cells[first].name, cells[second].name);
+            Err(layout.fault_of_name(second, what, mend))
         }
         (None, _) if !wanted.is_required => Ok(None),
         (None, _) => {
@@ -122,126 +85,205 @@ fn cell_of(
                 quote(&wanted.name),
                 wanted.column.name
             );
-            let mend = offer_columns(&wanted.name, &header.names());
-            Err(source.error_at(header.byte, what, mend))
+            let mend = offer_columns(&wanted.name, &layout.header.names());
+            Err(source.error_at(layout.header.byte, what, mend))
         }
     }
 }
 
-/// The rows read so far.
-struct Reader<'a> {
-    source: &'a Arc<SourceFile>,
-    header: &'a Header,
-    decimals: Decimals,
-    times: Times,
-    time_cell: usize,
-    taken: &'a [MappedColumn],
-    linkage: &'a Linkage,
-    times_s: Vec<f64>,
-    values: Vec<Vec<f64>>,
-    /// Byte offset of each row in the file.
-    bytes: Vec<usize>,
-}
-
-impl Reader<'_> {
-    /// Adds a row. A fault that is tolerated in the last row is returned as a value.
-    fn push(
-        &mut self,
-        byte: usize,
-        row: &StringRecord,
-    ) -> Result<Option<CampaignError>, CampaignError> {
-        let cells = self.taken.iter().map(|taken| taken.cell);
-        let needed = cells.fold(self.time_cell, usize::max) + 1;
-        if row.len() < needed {
-            let what = format!(
-                "the row has {} cells, the header has {}",
-                row.len(),
-                self.header.cells.len()
-            );
-            let mend = "write the separators of empty cells too";
-            return Ok(Some(self.source.error_at(byte, what, mend)));
+impl<'a> Reader<'a> {
+    fn new(
+        source: &SourceFile,
+        layout: &'a Layout<'a>,
+        settings: &ColumnSettings,
+        linkage: &'a Linkage,
+    ) -> Result<Self, CampaignError> {
+        let mut found: Vec<(&Source, usize)> = Vec::new();
+        for wanted in &settings.sources {
+            found.extend(index_of(source, layout, wanted)?.map(|index| (wanted, index)));
         }
-        let cell = &row[self.time_cell];
-        let Some(time_s) = self.times.read(cell) else {
-            let what = format!(
-                "{} is not a time in the format of the previous ones",
-                quote(cell)
-            );
-            let mend = "every row needs a time: a number, a date with a time, or a time of day";
-            return Ok(Some(self.fault(byte, self.time_cell, what, mend)));
+        let time = found.iter().find(|(wanted, _)| is_time(wanted.column));
+        let &(time, main) = time.ok_or_else(|| {
+            let what = format!("no column is assigned to {TIME}");
+            let mend = format!("assign it under [columns]: {TIME} = \"Name:s\"");
+            source.error_at(layout.header.byte, what, mend)
+        })?;
+        let unit = |index: usize| layout.header.cells[index].unit.as_deref();
+        let column_of = |index: usize, scale| TimeColumn {
+            index,
+            times: Times::new(scale),
+            times_s: Vec::new(),
+            bytes: Vec::new(),
         };
-        for (index, taken) in self.taken.iter().enumerate() {
-            let value = self.value(taken, &row[taken.cell]);
-            let value = value.map_err(|(what, mend)| self.fault(byte, taken.cell, what, &mend))?;
-            self.values[index].push(value);
+        let mut times = vec![column_of(main, time.scale(unit(main)).ok())];
+        let lift = found.iter().find(|(wanted, _)| wanted.column.name == LIFT);
+        let lift = lift.map(|(_, index)| *index);
+        let mut columns = Vec::new();
+        for (wanted, index) in found
+            .into_iter()
+            .filter(|(wanted, _)| !is_time(wanted.column))
+        {
+            let scale = wanted.scale(unit(index));
+            let scale = scale.map_err(|(what, mend)| layout.fault_of_name(index, what, mend))?;
+            let base = base_of(&layout.bases, index, main, lift);
+            let known = times.iter().position(|times| times.index == base);
+            let place = known.unwrap_or(times.len());
+            if known.is_none() {
+                let scale = unit(base).and_then(|unit| Scale::of(unit, &TIMES).ok());
+                times.push(column_of(base, scale));
+            }
+            columns.push(MappedColumn {
+                column: wanted.column,
+                name: wanted.name.clone(),
+                index,
+                scale,
+                times: place,
+                values: Vec::new(),
+            });
         }
-        self.times_s.push(time_s);
-        self.bytes.push(byte);
+        Ok(Self {
+            layout,
+            linkage,
+            times,
+            columns,
+        })
+    }
+
+    /// Adds a row. A fault that is tolerated in the last row is returned as a value.
+    fn push(&mut self, row: Row<'_>) -> Result<Option<CampaignError>, CampaignError> {
+        let layout = self.layout;
+        for (place, time) in self.times.iter_mut().enumerate() {
+            let cell = row.cell(time.index);
+            let own = || (0..self.columns.len()).filter(|&own| self.columns[own].times == place);
+            // A slow rate has fewer rows than a fast one.
+            if cell.is_empty() && own().all(|own| row.cell(self.columns[own].index).is_empty()) {
+                continue;
+            }
+            let Some(time_s) = time.times.read(cell) else {
+                let what = format!(
+                    "{} is not a time in the format of the previous ones",
+                    quote(cell)
+                );
+                let mend = "every row needs a time: a number, a date with a time, or a time of day";
+                return Ok(Some(layout.fault(row.byte, time.index, what, mend)));
+            };
+            for own in own().collect::<Vec<usize>>() {
+                let index = self.columns[own].index;
+                let value = value(&self.columns[own], layout, self.linkage, row.cell(index));
+                let value =
+                    value.map_err(|(what, mend)| layout.fault(row.byte, index, what, &mend))?;
+                self.columns[own].values.push(value);
+            }
+            time.times_s.push(time_s);
+            time.bytes.push(row.byte);
+        }
         Ok(None)
     }
 
-    /// The value of a cell in the column's unit; a cell without digits is a dropout.
-    fn value(&self, taken: &MappedColumn, cell: &str) -> Result<f64, (String, String)> {
-        let MappedColumn { column, name, .. } = taken;
-        if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
-            return Ok(f64::NAN);
-        }
-        let Some(number) = self.decimals.number(cell) else {
-            let what = format!("{} in column {} is not a number", quote(cell), quote(name));
-            let mend = "leave the cell of a dropout empty; decimals have a point or a comma, thousands no separator";
-            return Err((what, mend.to_owned()));
-        };
-        let value = taken.scale.apply(number, self.linkage);
-        if column.range.contains(&value) {
-            return Ok(value);
-        }
-        let what = format!(
-            "{} in column {} would be {} = {value}",
-            quote(cell),
-            quote(name),
-            column.name
-        );
-        let (low, high) = (column.range.start(), column.range.end());
-        let mend = format!(
-            "the range is {low} to {high}: check the unit under [columns], and leave the cell of a dropout empty"
-        );
-        Err((what, mend))
-    }
-
-    fn fault(&self, byte: usize, cell: usize, what: String, mend: &str) -> CampaignError {
-        cell_error(
-            self.source,
-            byte,
-            (cell, self.header.mark.into()),
-            what,
-            mend,
-        )
-    }
-
-    fn table(self) -> Result<Table, CampaignError> {
-        if self.bytes.is_empty() {
+    /// The rows of the times of the lift current, to which samples at other times are moved.
+    fn table(self, source: &Arc<SourceFile>) -> Result<Table, CampaignError> {
+        let layout = self.layout;
+        let lift = self
+            .columns
+            .iter()
+            .find(|column| column.column.name == LIFT);
+        let main = lift.map_or(0, |lift| lift.times);
+        let rows = &self.times[main];
+        if rows.bytes.is_empty() {
             let mend = "log the run again";
-            return Err(self.source.error("contains a header but no samples", mend));
+            return Err(source.error("contains a header but no samples", mend));
         }
+        let of_rows = Series {
+            times_s: rows.times_s.clone(),
+            ..Series::default()
+        };
+        let within_s = of_rows.median_step_s() / 2.0;
         let mut columns = vec![Samples {
             name: TIME,
-            cell: self.time_cell,
-            values: self.times_s,
+            cell: layout.cell(rows.index),
+            values: rows.times_s.clone(),
         }];
-        for (taken, values) in self.taken.iter().zip(self.values) {
-            if values.iter().all(|value| value.is_nan()) {
+        for taken in &self.columns {
+            let times = &self.times[taken.times];
+            if taken.values.iter().all(|value| value.is_nan()) {
                 let what = format!("column {} contains no number", quote(&taken.name));
                 let mend = "assign another column, or delete its line under [columns]";
-                let place = (taken.cell, self.header.mark.into());
-                return Err(cell_error(self.source, self.header.byte, place, what, mend));
+                return Err(layout.fault_of_name(taken.index, what, mend));
             }
+            let values = match taken.times == main {
+                true => taken.values.clone(),
+                false => {
+                    times.check(layout)?;
+                    let later_s = times.times.later_than_s(&rows.times);
+                    let series = Series {
+                        times_s: times
+                            .times_s
+                            .iter()
+                            .map(|time_s| time_s + later_s)
+                            .collect(),
+                        values: taken.values.clone(),
+                        bytes: times.bytes.clone(),
+                    };
+                    values(taken.column.name, &series, &rows.times_s, within_s)
+                }
+            };
             columns.push(Samples {
                 name: taken.column.name,
-                cell: taken.cell,
+                cell: layout.cell(taken.index),
                 values,
             });
         }
-        let cells = Cells::Between(self.header.mark.into());
-        Table::new(Arc::clone(self.source), columns, self.bytes, cells)
+        let cells = Cells::Between(layout.header.mark.into());
+        Table::new(Arc::clone(source), columns, rows.bytes.clone(), cells)
     }
+}
+
+impl TimeColumn {
+    /// Rejects times that do not rise.
+    fn check(&self, layout: &Layout<'_>) -> Result<(), CampaignError> {
+        let pairs = self.times_s.windows(2);
+        let Some(at) = pairs.clone().position(|pair| pair[1] <= pair[0]) else {
+            return Ok(());
+        };
+        let what = format!(
+            "time does not rise: {} s after {} s",
+            self.times_s[at + 1],
+            self.times_s[at]
+        );
+        let mend = "the times of each rate have to rise from row to row";
+        Err(layout.fault(self.bytes[at + 1], self.index, what, mend))
+    }
+}
+
+/// The value of a cell in the column's unit; a cell without digits is a dropout.
+fn value(
+    taken: &MappedColumn,
+    layout: &Layout<'_>,
+    linkage: &Linkage,
+    cell: &str,
+) -> Result<f64, (String, String)> {
+    let MappedColumn { column, name, .. } = taken;
+    if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
+        return Ok(f64::NAN);
+    }
+    let Some(number) = layout.decimals[taken.index].number(cell) else {
+        let what = format!("{} in column {} is not a number", quote(cell), quote(name));
+        let mend = "leave the cell of a dropout empty; decimals have a point or a comma, thousands no separator";
+        return Err((what, mend.to_owned()));
+    };
+    let value = taken.scale.apply(number, linkage);
+    if column.range.contains(&value) {
+        return Ok(value);
+    }
+    let what = format!(
+        "{} in column {} would be {} = {value}",
+        quote(cell),
+        quote(name),
+        column.name
+    );
+    let (low, high) = (column.range.start(), column.range.end());
+    let mend = format!(
+        "the range is {low} to {high}: check the unit under [columns], and leave the cell of a dropout empty"
+    );
+    Err((what, mend))
 }

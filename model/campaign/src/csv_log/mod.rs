@@ -2,6 +2,7 @@
 pub mod clock;
 pub mod dialect;
 pub mod flow_curve;
+mod layout;
 pub mod linkage_table;
 mod mapped;
 mod native;
@@ -9,9 +10,10 @@ mod number_table;
 
 use std::sync::Arc;
 
-use dialect::{Decimals, Header, HeaderCell};
+use dialect::{Header, HeaderCell};
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
+use layout::Layout;
 
 use crate::CampaignError;
 use crate::columns::{ColumnSettings, offer_columns};
@@ -37,7 +39,7 @@ pub fn read(
         .map(|wanted| wanted.name.as_str())
         .collect();
     match Header::with_names(&source.text, &names) {
-        Some(header) => mapped::read(source, &header, settings, linkage),
+        Some(header) => mapped::read(source, &Layout::new(source, header), settings, linkage),
         None if native::has_own_header(source) => native::read(source),
         None => Err(no_header(source, &names)),
     }
@@ -68,26 +70,37 @@ pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
         let mend = "export it with a header, and commas, semicolons or tabs between the columns";
         return Err(source.error(what, mend));
     };
-    let all: Vec<usize> = (0..header.cells.len()).collect();
-    let decimals = Decimals::in_columns(&source.text, &header, &all);
-    let mut columns: Vec<LogColumn> = header.cells.iter().map(empty_column).collect();
-    for (_, row) in dialect::rows(&source.text, header.data_byte, header.mark).take(MOST_ROWS) {
-        for (column, cell) in columns.iter_mut().zip(row.iter()) {
-            let number = decimals.number(cell).filter(|number| number.is_finite());
+    let layout = Layout::new(source, header);
+    let mut columns: Vec<LogColumn> = layout.header.cells.iter().map(empty_column).collect();
+    let mut rows = 0;
+    let left_out = layout.each_row(|row| {
+        rows += 1;
+        for (index, column) in columns.iter_mut().enumerate().filter(|_| rows <= MOST_ROWS) {
+            let cell = row.cell(index);
+            let number = layout.decimals[index].number(cell);
+            let number = number.filter(|number| number.is_finite());
             column.is_clock |= column.values.is_empty() && clock::is_clock(cell);
             column.values.push(number.unwrap_or(f64::NAN));
         }
+        Ok(None)
+    })?;
+    let mut notes = layout.notes.clone();
+    match left_out {
+        0 => {}
+        1 => notes.push("a line below the samples is left out".to_owned()),
+        lines => notes.push(format!("{lines} lines below the samples are left out")),
+    }
+    for (index, base) in layout.bases.iter().enumerate() {
+        columns[index].times = base.map(|base| layout.header.cells[base].name.clone());
     }
     columns.retain(|column| !column.name.is_empty());
-    Ok(Survey::Table(columns))
+    Ok(Survey::Table { columns, notes })
 }
 
 fn empty_column(cell: &HeaderCell) -> LogColumn {
     LogColumn {
         name: cell.name.clone(),
         unit: cell.unit.as_deref().map(|unit| spelling(unit).to_owned()),
-        comment: String::new(),
-        values: Vec::new(),
-        is_clock: false,
+        ..LogColumn::default()
     }
 }

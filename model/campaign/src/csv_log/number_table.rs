@@ -1,10 +1,10 @@
 //! Columns of numbers from a text table of any dialect, with the units in its header.
 
-use csv::StringRecord;
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::source_file::SourceFile;
 
-use crate::csv_log::dialect::{Decimals, Header, HeaderCell, rows};
+use crate::csv_log::dialect::{Header, HeaderCell};
+use crate::csv_log::layout::Layout;
 
 /// A column that a table has to have.
 pub struct Wanted {
@@ -46,23 +46,26 @@ impl<const N: usize> NumberTable<N> {
         for (found, wanted) in found.iter_mut().zip(wanted) {
             *found = column(source, &header, wanted)?;
         }
-        let decimals = Decimals::in_columns(&source.text, &header, &found.map(|(index, _)| index));
+        let layout = Layout::new(source, header);
         let mut table = Self {
             columns: [const { Vec::new() }; N],
             bytes: Vec::new(),
         };
-        for (byte, row) in rows(&source.text, header.data_byte, header.mark) {
-            if row
-                .iter()
-                .all(|cell| cell.is_empty() || cell.starts_with('#'))
-            {
-                continue;
+        layout.each_row(|row| {
+            if row.is_remark() {
+                return Ok(None);
             }
-            for (values, (index, unit)) in table.columns.iter_mut().zip(found) {
-                values.push(unit * number(source, byte, &row, index, decimals)?);
+            for (values, (column, unit)) in table.columns.iter_mut().zip(found) {
+                let text = row.cell(column);
+                let number = layout.decimals[column].number(text).ok_or_else(|| {
+                    let what = format!("{} is not a number", quote(text));
+                    source.error_at(row.byte, what, "write a number, or delete the row")
+                })?;
+                values.push(unit * number);
             }
-            table.bytes.push(byte);
-        }
+            table.bytes.push(row.byte);
+            Ok(None)
+        })?;
         Ok(table)
     }
 }
@@ -100,18 +103,4 @@ fn unit(cell: &HeaderCell, units: &[(&str, f64)]) -> Option<f64> {
         .iter()
         .find(|(unit, _)| is_of(unit))
         .map(|(_, si)| *si)
-}
-
-fn number(
-    source: &SourceFile,
-    byte: usize,
-    row: &StringRecord,
-    cell: usize,
-    decimals: Decimals,
-) -> Result<f64, InputError> {
-    let text = row.get(cell).unwrap_or_default();
-    decimals.number(text).ok_or_else(|| {
-        let what = format!("{} is not a number", quote(text));
-        source.error_at(byte, what, "write a number, or delete the row")
-    })
 }

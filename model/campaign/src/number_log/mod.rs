@@ -16,10 +16,11 @@ use crate::CampaignError;
 use crate::channel_log::{self, ChannelFile, LogChannel};
 use crate::columns::Source;
 use crate::csv_log::clock::Times;
-use crate::scale::spelling;
+use crate::scale::{Scale, spelling};
 use crate::series::Series;
-use crate::survey::{LogColumn, Survey};
-use crate::table::TIME;
+use crate::survey::{LogColumn, Survey, fits};
+use crate::table::{TIME, TIMES};
+use crate::time_base::{self, Seen};
 
 /// Most numbers of a file: as text they would fill the longest file that is read.
 const MOST_NUMBERS: usize = 64 << 20;
@@ -69,6 +70,7 @@ impl NumberLog {
             name: column.name.clone(),
             unit: column.unit.clone(),
             samples: column.values.len(),
+            fault: None,
         };
         Ok(Some(Self {
             channels: columns.iter().map(channel).collect(),
@@ -82,17 +84,45 @@ impl NumberLog {
         let is_timed = |column: &&NumberColumn| column.times.is_some();
         let timed: Vec<LogColumn> = self.columns.iter().filter(is_timed).map(listed).collect();
         match timed.is_empty() {
-            true => Survey::Table(self.columns.iter().map(listed).collect()),
+            true => {
+                let (seen, bases) = self.bases();
+                let mut columns: Vec<LogColumn> = self.columns.iter().map(listed).collect();
+                for (column, base) in columns.iter_mut().zip(&bases) {
+                    column.times = base.map(|base| self.columns[base].name.clone());
+                }
+                let notes = time_base::notes(&seen, &bases);
+                Survey::Table { columns, notes }
+            }
             false => Survey::Channels(timed),
         }
+    }
+
+    /// The columns as far as times matter, and the column of times of each.
+    fn bases(&self) -> (Vec<Seen>, Vec<Option<usize>>) {
+        let seen = |column: &NumberColumn| {
+            let unit = column.unit.as_deref().map(spelling);
+            Seen {
+                name: column.name.clone(),
+                is_in_time: unit.is_some_and(|unit| unit != "V" && fits(unit, TIME)),
+                has_unit: unit.is_some(),
+                is_clock: false,
+                samples: column.values.len(),
+                rises: time_base::rises(&column.values),
+            }
+        };
+        let seen: Vec<Seen> = self.columns.iter().map(seen).collect();
+        let bases = time_base::bases(&seen);
+        (seen, bases)
     }
 
     /// The times of a column, as logged, with their unit.
     fn times<'s>(
         &'s self,
-        column: &'s NumberColumn,
+        index: usize,
         time: Option<&Source>,
+        lift: Option<usize>,
     ) -> Result<(&'s [f64], Times), CampaignError> {
+        let column = &self.columns[index];
         if let Some(own) = &column.times {
             return Ok((own, Times::new(None)));
         }
@@ -101,8 +131,13 @@ impl NumberLog {
             let mend = format!("assign it under [columns]: {TIME} = \"Name:s\"");
             return Err(self.source.error(what, mend));
         };
-        let found = self.columns.iter().find(|column| column.name == time.name);
-        let found = found.ok_or_else(|| channel_log::missing(self, time))?;
+        let named = self
+            .columns
+            .iter()
+            .position(|column| column.name == time.name);
+        let main = named.ok_or_else(|| channel_log::missing(self, time))?;
+        let base = time_base::base_of(&self.bases().1, index, main, lift);
+        let found = &self.columns[base];
         if found.values.len() != column.values.len() {
             let what = format!(
                 "column {} has {} values, and {} of the times has {}",
@@ -114,7 +149,11 @@ impl NumberLog {
             let mend = "assign the times of this column, or save it as a struct with the fields Time and Data";
             return Err(self.source.error(what, mend));
         }
-        let scale = time.scale(found.unit.as_deref()).ok();
+        let logged = found.unit.as_deref();
+        let scale = match base == main {
+            true => time.scale(logged).ok(),
+            false => logged.and_then(|unit| Scale::of(unit, &TIMES).ok()),
+        };
         Ok((&found.values, Times::new(scale)))
     }
 }
@@ -124,9 +163,8 @@ fn listed(column: &NumberColumn) -> LogColumn {
     LogColumn {
         name: column.name.clone(),
         unit: unit.map(|unit| spelling(unit).to_owned()),
-        comment: String::new(),
         values: column.values.clone(),
-        is_clock: false,
+        ..LogColumn::default()
     }
 }
 
@@ -139,9 +177,14 @@ impl ChannelFile for NumberLog {
         &self.channels
     }
 
-    fn series(&self, channel: usize, time: Option<&Source>) -> Result<Series, CampaignError> {
+    fn series(
+        &self,
+        channel: usize,
+        time: Option<&Source>,
+        lift: Option<usize>,
+    ) -> Result<Series, CampaignError> {
         let column = &self.columns[channel];
-        let (logged, mut times) = self.times(column, time)?;
+        let (logged, mut times) = self.times(channel, time, lift)?;
         let mut times_s = Vec::with_capacity(logged.len());
         for (index, &number) in logged.iter().enumerate() {
             let time_s = Some(number).filter(|number| number.is_finite());

@@ -10,6 +10,8 @@ use hitch_plant::Channel;
 use proptest::prelude::*;
 use tempfile::TempDir;
 
+mod shape;
+
 const HEAD: &str =
     "format = 1\nname = \"a\"\n[[run]]\nfile = \"FILE\"\nbench = \"hitch\"\nload_kg = 150\n";
 

@@ -1,0 +1,253 @@
+//! The description of a text table: dialect, shape and times. The survey, the readers and their messages follow from it.
+
+use csv::StringRecord;
+use hitch_input::source_file::SourceFile;
+
+use crate::CampaignError;
+use crate::csv_log::clock::{Times, is_clock};
+use crate::csv_log::dialect::{Decimals, Header, is_sample, rows};
+use crate::scale::{Scale, spelling};
+use crate::table::{TIMES, cell_error};
+use crate::time_base::{Seen, bases, is_time_name, notes, rises};
+
+/// Number of rows that are examined.
+const EXAMINED_ROWS: usize = 1_000;
+
+/// A table below a header.
+#[derive(Debug)]
+pub struct Layout<'s> {
+    source: &'s SourceFile,
+    /// Separator, names and units.
+    pub header: Header,
+    /// Number of cells of a row before its first named cell: 1 with row names.
+    shift: usize,
+    /// Form of the numbers, by column.
+    pub decimals: Vec<Decimals>,
+    /// The column of times of each column.
+    pub bases: Vec<Option<usize>>,
+    /// What was assumed, one line each.
+    pub notes: Vec<String>,
+}
+
+/// A row of a table.
+#[derive(Debug, Clone, Copy)]
+pub struct Row<'r> {
+    /// Its byte offset in the text.
+    pub byte: usize,
+    record: &'r StringRecord,
+    shift: usize,
+}
+
+impl<'r> Row<'r> {
+    /// The text of a column; empty without one.
+    pub fn cell(&self, column: usize) -> &'r str {
+        self.record.get(column + self.shift).unwrap_or_default()
+    }
+
+    /// Whether each cell is empty or begins with `#`.
+    pub fn is_remark(&self) -> bool {
+        let mut cells = self.record.iter();
+        cells.all(|cell| cell.is_empty() || cell.starts_with('#'))
+    }
+}
+
+impl<'s> Layout<'s> {
+    /// Examines the first rows below a header.
+    pub fn new(source: &'s SourceFile, header: Header) -> Self {
+        let first: Vec<StringRecord> = rows(&source.text, header.data_byte, header.mark)
+            .take(EXAMINED_ROWS)
+            .map(|(_, row)| row)
+            .filter(|row| !row.iter().all(str::is_empty))
+            .collect();
+        let mut layout = Self {
+            source,
+            shift: 0,
+            decimals: Vec::new(),
+            bases: Vec::new(),
+            notes: Vec::new(),
+            header,
+        };
+        if layout.has_row_names(&first) {
+            layout.shift = 1;
+            let names = "the first cell of each row has no name above it: it is read as the name of the row";
+            layout.notes.push(names.to_owned());
+        }
+        layout.decimals = layout.decimals_of(&first);
+        let seen: Vec<Seen> = (0..layout.header.cells.len())
+            .map(|column| layout.seen(column, &first))
+            .collect();
+        layout.bases = bases(&seen);
+        layout.notes.extend(notes(&seen, &layout.bases));
+        layout
+    }
+
+    /// Whether each row has one more cell than the header, the first of which names the row.
+    fn has_row_names(&self, rows: &[StringRecord]) -> bool {
+        let (width, cells) = (self.header.width, &self.header.cells);
+        let rows: Vec<&StringRecord> = rows.iter().filter(|row| is_sample(row)).collect();
+        let is_longer = rows.len() > 1 && rows.iter().all(|row| row.len() == width + 1);
+        if !is_longer || rows.iter().all(|row| row[width].is_empty()) {
+            return false;
+        }
+        let number = |row: &&StringRecord, cell: usize| Decimals::ANY.number(&row[cell]);
+        let first: Vec<Option<f64>> = rows.iter().map(|row| number(row, 0)).collect();
+        if first.iter().all(Option::is_none) {
+            return rows.iter().all(|row| !is_clock(&row[0]));
+        }
+        let counts = |pair: &[Option<f64>]| match (pair[0], pair[1]) {
+            (Some(a), Some(b)) => a.fract() == 0.0 && b > a,
+            _ => false,
+        };
+        // A column of times has to be one behind the row names as well: otherwise the further cell may be the last one.
+        let second: Vec<f64> = rows.iter().filter_map(|row| number(row, 1)).collect();
+        let is_clock = || rows.iter().all(|row| is_clock(&row[1]));
+        let begins_with_time = cells.first().is_some_and(|cell| is_time_name(&cell.name));
+        first.windows(2).all(counts) && begins_with_time && (rises(&second) || is_clock())
+    }
+
+    fn decimals_of(&mut self, first: &[StringRecord]) -> Vec<Decimals> {
+        let columns = 0..self.header.cells.len();
+        let shift = self.shift;
+        let cells = |column: usize| first.iter().filter_map(move |row| row.get(column + shift));
+        let of_table = Decimals::of(columns.clone().flat_map(cells));
+        let mut all = Vec::with_capacity(columns.len());
+        for column in columns {
+            let has_digits = |cell: &&str| cell.bytes().any(|byte| byte.is_ascii_digit());
+            let filled: Vec<&str> = cells(column).filter(has_digits).collect();
+            let (decimals, thousands) = of_table.of_column(&filled);
+            if let Some(mark) = thousands {
+                let name = &self.header.cells[column].name;
+                self.notes.push(format!(
+                    "assumed: \"{mark}\" separates thousands in \"{name}\""
+                ));
+            }
+            all.push(decimals);
+        }
+        all
+    }
+
+    fn seen(&self, column: usize, first: &[StringRecord]) -> Seen {
+        let cell = &self.header.cells[column];
+        let unit = cell.unit.as_deref().map(spelling);
+        let cells = first.iter().filter_map(|row| row.get(column + self.shift));
+        let filled: Vec<&str> = cells
+            .filter(|cell| cell.bytes().any(|b| b.is_ascii_digit()))
+            .collect();
+        let mut times = Times::new(None);
+        let values: Vec<f64> = filled
+            .iter()
+            .filter_map(|text| match is_clock(text) {
+                true => times.read(text),
+                false => self.decimals[column].number(text),
+            })
+            .collect();
+        Seen {
+            name: cell.name.clone(),
+            is_in_time: unit.is_some_and(|unit| unit != "V" && Scale::of(unit, &TIMES).is_ok()),
+            has_unit: unit.is_some(),
+            is_clock: filled.first().is_some_and(|text| is_clock(text)),
+            samples: values.len(),
+            rises: rises(&values),
+        }
+    }
+
+    /// Calls `take` for each row with a sample. A fault that it returns as a value is tolerated in the last row, as are
+    /// lines below the samples. Returns the number of lines that were left out.
+    ///
+    /// # Errors
+    /// The first row with more or fewer cells than the header, or fault of `take`.
+    pub fn each_row(
+        &self,
+        mut take: impl FnMut(Row<'_>) -> Result<Option<CampaignError>, CampaignError>,
+    ) -> Result<usize, CampaignError> {
+        let mut fault: Option<CampaignError> = None;
+        let (mut left_out, mut only_remarks, mut samples) = (0, true, 0);
+        for (byte, record) in rows(&self.source.text, self.header.data_byte, self.header.mark) {
+            if record.iter().all(str::is_empty) {
+                continue;
+            }
+            let row = Row {
+                byte,
+                record: &record,
+                shift: self.shift,
+            };
+            let found = match self.misfit(byte, &record) {
+                Some(misfit) => Some(misfit),
+                None => take(row)?,
+            };
+            match (found, fault.take()) {
+                (None, Some(before)) => return Err(before),
+                (None, None) => samples += 1,
+                (Some(found), before) => {
+                    left_out += 1;
+                    only_remarks &= !is_sample(&record);
+                    fault = before.or(Some(found));
+                }
+            }
+        }
+        match fault {
+            Some(fault) if samples == 0 || (left_out > 1 && !only_remarks) => Err(fault),
+            _ => Ok(left_out),
+        }
+    }
+
+    /// The fault of a row that does not have the cells of the header.
+    fn misfit(&self, byte: usize, record: &StringRecord) -> Option<CampaignError> {
+        let named = self
+            .header
+            .cells
+            .iter()
+            .rposition(|cell| !cell.text.is_empty());
+        let least = named.map_or(0, |last| last + 1) + self.shift;
+        let filled = (0..record.len()).rfind(|&cell| !record[cell].is_empty());
+        let most = self.header.width + self.shift;
+        let is_long = filled.is_some_and(|last| last >= most);
+        if !is_long && record.len() >= least {
+            return None;
+        }
+        let what = format!(
+            "the row has {} cells, the header has {}",
+            record.len(),
+            self.header.width
+        );
+        let mend = match is_long {
+            true => {
+                "each cell needs a name above it: name all columns in the header, and separate the columns by semicolons if numbers have a decimal comma"
+            }
+            false => "write the separators of empty cells too",
+        };
+        Some(self.source.error_at(byte, what, mend))
+    }
+
+    /// A fault of a cell of a row.
+    pub fn fault(&self, byte: usize, column: usize, what: String, mend: &str) -> CampaignError {
+        cell_error(
+            self.source,
+            byte,
+            (self.cell(column), self.header.mark.into()),
+            what,
+            mend,
+        )
+    }
+
+    /// A fault of a name in the header.
+    pub fn fault_of_name(
+        &self,
+        column: usize,
+        what: String,
+        mend: impl Into<String>,
+    ) -> CampaignError {
+        cell_error(
+            self.source,
+            self.header.byte,
+            (column, self.header.mark.into()),
+            what,
+            mend,
+        )
+    }
+
+    /// Index of the cell of a column in a row.
+    pub fn cell(&self, column: usize) -> usize {
+        column + self.shift
+    }
+}

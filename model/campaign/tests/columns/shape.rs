@@ -1,0 +1,100 @@
+//! The shape of a table: its rows, the times of each rate, and equal names.
+
+use hitch_plant::Channel;
+
+use crate::{assert_same, fault, loaded, plain, samples, table};
+
+const PLAIN: &str = "[columns]\ntime_s = \"t:s\"\nlift_current_a = \"up:A\"\nlower_current_a = \"down:A\"\n\
+    cylinder_pressure_bar = \"p:bar\"\nrocker_angle_deg = \"phi:deg\"\n";
+
+#[test]
+fn rows_have_the_cells_of_the_header_or_names() {
+    let text = table("t,up,down,p,phi", ",", plain);
+    let (head, rows) = text.split_once('\n').unwrap();
+    let named = |name: &dyn Fn(usize) -> String| {
+        let rows = rows.lines().enumerate();
+        let rows: String = rows
+            .map(|(i, row)| format!("{},{row}\n", name(i)))
+            .collect();
+        format!("{head}\n{rows}")
+    };
+    for (case, text) in [
+        ("numbers", named(&|i| format!("\"{}\"", i + 1))),
+        ("keywords", named(&|_| "DATA".to_owned())),
+        (
+            "empty cells",
+            format!("{head}\n{}", rows.replace('\n', ",,\n")),
+        ),
+        (
+            "lines below",
+            format!("{text}\nEnd of measurement\nSamples: 200\n"),
+        ),
+    ] {
+        assert_same(case, &loaded("bench.csv", text.as_bytes(), PLAIN), 1e-12);
+    }
+    for (text, expected) in [
+        (
+            format!("{head}\n{}", rows.replace('\n', ",7\n")),
+            "bench.csv:2:1: the row has 6 cells, the header has 5",
+        ),
+        (
+            text.replacen("\n0.02,", "\n0.02,7,", 1),
+            "bench.csv:4:1: the row has 6 cells, the header has 5",
+        ),
+        (
+            text.replacen("\n0.02,", "\n", 1),
+            "bench.csv:4:1: the row has 4 cells, the header has 5",
+        ),
+    ] {
+        let got = fault(&text, PLAIN);
+        assert!(got.starts_with(expected), "{got}");
+    }
+}
+
+#[test]
+fn each_column_is_read_at_its_own_times() {
+    let own = samples();
+    let mut text = "t,up,down,phi,t slow,p\n".to_owned();
+    for (i, [t, a, b, _, w]) in own.iter().enumerate() {
+        let slow = own.get(10 * i).map(|row| format!("{},{}", row[0], row[3]));
+        text += &format!(
+            "{t},{a},{b},{w},{}\n",
+            slow.unwrap_or_else(|| ",".to_owned())
+        );
+    }
+    let run = loaded("bench.csv", text.as_bytes(), PLAIN);
+    let pressure = run.channel(Channel::CylinderPressure).unwrap();
+    let angle = run.channel(Channel::RockerAngle).unwrap();
+    assert_eq!(run.time_s.len(), own.len());
+    for (i, row) in own.iter().enumerate() {
+        assert!((angle[i] - row[4]).abs() < 1e-9);
+        match i % 10 {
+            0 => assert!((pressure[i] - row[3]).abs() < 1e-9, "{i}: {}", pressure[i]),
+            _ => assert!(pressure[i].is_nan(), "{i}: {}", pressure[i]),
+        }
+    }
+    let back = text.replacen(",0.1,", ",0.3,", 1);
+    let got = fault(&back, PLAIN);
+    assert!(
+        got.starts_with("bench.csv:4:") && got.contains("time does not rise"),
+        "{got}"
+    );
+}
+
+#[test]
+fn columns_with_equal_names_are_told_apart() {
+    let text = table("t,up,down,p,p", ",", plain);
+    let columns = PLAIN
+        .replace("\"phi:deg\"", "\"p #2:deg\"")
+        .replace("\"p:bar\"", "\"p #1:bar\"");
+    assert_same(
+        "equal",
+        &loaded("bench.csv", text.as_bytes(), &columns),
+        1e-12,
+    );
+    let got = fault(&text, &columns.replace("p #1", "p"));
+    assert!(
+        got.contains("column \"p\" is duplicated; assign p #1 or p #2"),
+        "{got}"
+    );
+}

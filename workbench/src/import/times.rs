@@ -1,0 +1,229 @@
+//! The times of a log: their column, and their unit if the log states none.
+
+use hitch_campaign::survey::{LogColumn, TIMES, fits, is_time_name, unit_size_s};
+
+use super::{Taken, Untold};
+
+/// Longest step of a log whose unit is assumed, s.
+const LONGEST_STEP_S: f64 = 0.5;
+/// Shortest run whose unit of time is assumed, s.
+const SHORTEST_RUN_S: f64 = 0.5;
+
+/// The unit of times without one, and the reason.
+///
+/// # Errors
+/// No unit, or more than one, makes them a run.
+fn assumed_unit(column: &LogColumn) -> Result<(Option<&'static str>, String), Untold> {
+    const UNITS: [(&str, f64); 7] = [
+        ("s", 1.0),
+        ("ms", 1e-3),
+        ("us", 1e-6),
+        ("ns", 1e-9),
+        ("min", 60.0),
+        ("h", 3_600.0),
+        ("d", 86_400.0),
+    ];
+    /// Since 1970 in s or a part of it.
+    const EPOCH: f64 = 1e8;
+    /// Days since 1900 (Excel) and since the year 0 (MATLAB), of the dates from 1980 to 2100.
+    const DATES: [std::ops::Range<f64>; 2] = [29_000.0..74_000.0, 723_000.0..768_000.0];
+    let known: Vec<f64> = column
+        .values
+        .iter()
+        .copied()
+        .filter(|value| value.is_finite())
+        .collect();
+    let ([first, .., last], steps) = (&known[..], known.len() as f64 - 1.0) else {
+        return Ok((None, "rises from row to row".to_owned()));
+    };
+    if *first >= EPOCH {
+        let reason = "rises from row to row; assumed to count from 1970: the log states no unit";
+        return Ok((None, reason.to_owned()));
+    }
+    let (span, step) = (last - first, (last - first) / steps);
+    let said = |unit: &str, size: f64| {
+        let (lasts_s, rate_hz) = (span * size, 1.0 / (step * size));
+        format!("in {unit} it lasts {lasts_s:.4} s at {rate_hz:.4} Hz")
+    };
+    if DATES.iter().any(|dates| dates.contains(first)) && step * 86_400.0 < LONGEST_STEP_S {
+        let reason = format!(
+            "assumed days: {}; the log states no unit",
+            said("d", 86_400.0)
+        );
+        return Ok((Some("d"), reason));
+    }
+    let is_run = |size: f64| {
+        let shortest_s = if size == 1.0 { 1e-4 } else { 5e-4 };
+        (shortest_s..=LONGEST_STEP_S).contains(&(step * size)) && span * size >= SHORTEST_RUN_S
+    };
+    // A step of a whole number of a few digits is one that a logger is set to.
+    let is_round = |size: f64| {
+        let digits = step * size / 10_f64.powf((step * size).log10().floor() - 1.0);
+        (digits - digits.round()).abs() < 1e-3
+    };
+    let runs: Vec<(&'static str, f64)> = UNITS
+        .into_iter()
+        .filter(|(_, size)| is_run(*size))
+        .collect();
+    let set: Vec<&(&str, f64)> = runs.iter().filter(|(_, size)| is_round(*size)).collect();
+    let counts = step == 1.0;
+    let unit = match (&runs[..], &set[..]) {
+        _ if counts => None,
+        ([first @ ("s", _), ..], set)
+            if set.is_empty() || set.iter().any(|(unit, _)| *unit == "s") =>
+        {
+            Some(*first)
+        }
+        ([only], _) => Some(*only),
+        _ => None,
+    };
+    match unit {
+        Some((unit, size)) => {
+            let reason = format!(
+                "assumed {unit}: {}; the log states no unit",
+                said(unit, size)
+            );
+            Ok((Some(unit), reason))
+        }
+        None => Err(Untold {
+            what: format!(
+                "\"{}\" has no unit, and none can be assumed: {}, {}",
+                column.name,
+                said("s", 1.0),
+                said("ms", 1e-3)
+            ),
+            mend: format!("give it, as in --map {TIMES}=\"{}:ms\"", column.name),
+        }),
+    }
+}
+
+/// Checks times with a unit of the log: a run of no length is one in another unit.
+fn check_unit(column: &LogColumn, unit: &str, size: f64) -> Result<(), Untold> {
+    let known = column
+        .values
+        .iter()
+        .copied()
+        .filter(|value| value.is_finite());
+    let known: Vec<f64> = known.collect();
+    let [first, .., last] = known[..] else {
+        return Ok(());
+    };
+    let lasts_s = (last - first) * size;
+    let step_s = lasts_s / (known.len() as f64 - 1.0);
+    if lasts_s >= SHORTEST_RUN_S / 10.0 && step_s < 1.0 {
+        return Ok(());
+    }
+    Err(Untold {
+        what: format!(
+            "the times \"{}\" would last {lasts_s:.4} s at {:.4} Hz, which is no run of a hitch; the log states {unit}",
+            column.name,
+            1.0 / step_s
+        ),
+        mend: format!(
+            "give the unit, as in --map {TIMES}=\"{}:{unit}\"",
+            column.name
+        ),
+    })
+}
+
+/// The column of the times: that of the lift current, which the rows of a run are.
+///
+/// # Errors
+/// The times do not make a run of a hitch.
+pub fn time(columns: &[LogColumn], lift: Option<&LogColumn>) -> Result<Option<Taken>, Untold> {
+    let taken = |source: String, reason: &str, is_assumed| Taken {
+        channel: TIMES,
+        source,
+        reason: reason.to_owned(),
+        is_assumed,
+    };
+    let rises = |column: &&LogColumn| {
+        let known: Vec<f64> = column
+            .values
+            .iter()
+            .copied()
+            .filter(|value| !value.is_nan())
+            .collect();
+        known.len() > 1 && known.windows(2).all(|pair| pair[1] > pair[0])
+    };
+    let clock = columns.iter().find(|column| column.is_clock);
+    let named = columns
+        .iter()
+        .filter(rises)
+        .find(|column| is_time_name(&column.name));
+    let seconds = || {
+        columns
+            .iter()
+            .filter(rises)
+            .find(|column| unit_of_time(column).is_some())
+    };
+    let of_lift = lift.and_then(|lift| lift.times.as_ref());
+    let of_lift = columns.iter().find(|column| Some(&column.name) == of_lift);
+    let clock = of_lift.filter(|column| column.is_clock).or(clock);
+    let number = match of_lift {
+        Some(column) => Some(column).filter(|column| !column.is_clock),
+        None => named.or_else(seconds),
+    };
+    if let Some(column) = number {
+        let name = &column.name;
+        if let Some(unit) = unit_of_time(column) {
+            let size = unit_size_s(unit);
+            check_unit(column, unit, size)?;
+            let source = format!("{name}:{unit}");
+            return Ok(Some(taken(source, "rises from row to row", false)));
+        }
+        let (unit, reason) = assumed_unit(column)?;
+        let source = unit.map_or_else(|| name.clone(), |unit| format!("{name}:{unit}"));
+        return Ok(Some(taken(source, &reason, true)));
+    }
+    Ok(clock.map(|column| taken(column.name.clone(), "dates or times of day", false)))
+}
+
+fn unit_of_time(column: &LogColumn) -> Option<&str> {
+    column
+        .unit
+        .as_deref()
+        .filter(|unit| *unit != "V" && fits(unit, TIMES))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn column(first: f64, step: f64, samples: i32) -> LogColumn {
+        LogColumn {
+            name: "Time".to_owned(),
+            values: (0..samples).map(|i| first + step * f64::from(i)).collect(),
+            ..LogColumn::default()
+        }
+    }
+
+    #[test]
+    fn a_unit_is_assumed_if_it_alone_makes_a_run() {
+        for (first, step, unit) in [
+            (0.0, 0.02, "s"),
+            (0.0, 0.001, "s"),
+            (0.0, 20.0, "ms"),
+            (0.0, 20_000.0, "us"),
+            (0.0, 0.02 / 60.0, "min"),
+            (46_347.416_67, 0.02 / 86_400.0, "d"),
+            (740_000.416_67, 0.02 / 86_400.0, "d"),
+        ] {
+            let (got, reason) = assumed_unit(&column(first, step, 900)).unwrap();
+            assert_eq!(got, Some(unit), "{first} {step}: {reason}");
+            assert!(reason.contains("assumed"), "{reason}");
+        }
+        assert_eq!(assumed_unit(&column(1.8e9, 0.02, 900)).unwrap().0, None);
+        for (step, samples) in [(1.0, 1_200), (1e-9, 900), (700.0, 20)] {
+            let fault = assumed_unit(&column(0.0, step, samples)).unwrap_err();
+            assert!(fault.what.contains("no unit"), "{}", fault.what);
+        }
+    }
+
+    #[test]
+    fn a_stated_unit_has_to_make_a_run() {
+        assert!(check_unit(&column(0.0, 20.0, 351), "ms", 1e-3).is_ok());
+        assert!(check_unit(&column(0.0, 0.02, 351), "ms", 1e-3).is_err());
+        assert!(check_unit(&column(0.0, 1.0, 1_200), "s", 1.0).is_err());
+    }
+}
