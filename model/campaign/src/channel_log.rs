@@ -12,7 +12,7 @@ use crate::CampaignError;
 use crate::columns::{ColumnSettings, Source, offer_columns};
 use crate::scale::{Scale, spelling};
 use crate::series::{Series, values};
-use crate::survey::LogColumn;
+use crate::survey::{LogColumn, without_group};
 use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
 
 /// A channel of a log.
@@ -97,22 +97,22 @@ pub fn read(
     )
 }
 
-/// The channels with samples, each name once.
+/// The channels with samples.
 pub fn survey(file: &dyn ChannelFile) -> Vec<LogColumn> {
     let mut columns: Vec<LogColumn> = Vec::new();
     for (index, channel) in file.channels().iter().enumerate() {
-        let (values, fault) = match (channel.fault, file.series(index, None, None)) {
-            (Some(fault), _) => (Vec::new(), Some(fault.to_owned())),
-            (None, Ok(series)) => (series.values, None),
-            (None, Err(fault)) => (Vec::new(), Some(fault.what)),
+        let (series, fault) = match (channel.fault, file.series(index, None, None)) {
+            (Some(fault), _) => (Series::default(), Some(fault.to_owned())),
+            (None, Ok(series)) => (series, None),
+            (None, Err(fault)) => (Series::default(), Some(fault.what)),
         };
-        let known = columns.iter().any(|column| column.name == channel.name);
-        if !known && (fault.is_some() || !values.is_empty()) {
+        if fault.is_some() || !series.values.is_empty() {
             let unit = channel.unit.as_deref();
             columns.push(LogColumn {
                 name: channel.name.clone(),
                 unit: unit.map(|unit| spelling(unit).to_owned()),
-                values,
+                lasts_s: lasts(&series.times_s),
+                values: series.values,
                 fault,
                 ..LogColumn::default()
             });
@@ -121,15 +121,42 @@ pub fn survey(file: &dyn ChannelFile) -> Vec<LogColumn> {
     columns
 }
 
+/// Time from the first sample to the last one, in the unit of the times.
+pub fn lasts(times: &[f64]) -> Option<f64> {
+    let (first, last) = times.first().zip(times.last())?;
+    Some(last - first)
+}
+
 /// Index of the channel of a column; `None` if it is missing and optional.
 fn find(file: &dyn ChannelFile, wanted: &Source) -> Result<Option<usize>, CampaignError> {
     let channels = file.channels();
-    let named = (0..channels.len()).filter(|&index| channels[index].name == wanted.name);
-    // Tools create groups without samples for signals that were not sent.
-    match named.max_by_key(|&index| channels[index].samples) {
-        Some(channel) => Ok(Some(channel)),
-        None if !wanted.is_required => Ok(None),
-        None => Err(missing(file, wanted)),
+    let with = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
+        (0..channels.len())
+            .filter(|&index| is_it(&channels[index].name))
+            .collect()
+    };
+    let mut named = with(&|name| name == wanted.name);
+    if named.is_empty() {
+        named = with(&|name| without_group(name) == Some(wanted.name.as_str()));
+    }
+    match named[..] {
+        [channel] => Ok(Some(channel)),
+        [] if !wanted.is_required => Ok(None),
+        [] => Err(missing(file, wanted)),
+        [first, second, ..] => {
+            let what = format!(
+                "{} channels are named {}, and [columns] does not say which is {}",
+                named.len(),
+                quote(&wanted.name),
+                wanted.column.name
+            );
+            let [first, second] = [first, second].map(|index| quote(&channels[index].name));
+            let mend = match first == second {
+                true => "give them different names, and save the file again".to_owned(),
+                false => format!("assign {first} or {second}"),
+            };
+            Err(file.source().error(what, mend))
+        }
     }
 }
 

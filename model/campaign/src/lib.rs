@@ -21,6 +21,7 @@ mod files;
 mod little_endian;
 mod manifest;
 mod mdf_log;
+mod mdf_unit;
 mod number_log;
 mod run_log;
 mod scale;

@@ -1,5 +1,6 @@
 //! Logs of measurement tools in MDF, versions 3 and 4 (ASAM): CANape, INCA, CANedge, asammdf and others.
 
+use std::collections::{HashMap, HashSet};
 use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
@@ -13,7 +14,10 @@ use hitch_input::source_file::SourceFile;
 use crate::CampaignError;
 use crate::channel_log::{ChannelFile, LogChannel};
 use crate::columns::Source;
+use crate::mdf_unit::UnitReader;
 use crate::series::Series;
+use crate::survey::OF_GROUP;
+use crate::time_base::unit_size_s;
 
 /// Byte offset of the version in a file.
 const VERSION: std::ops::Range<usize> = 8..16;
@@ -70,14 +74,14 @@ impl MdfFile {
         let fault = |error: falcon_mdf::Mf4Error| unreadable(&source, "", &error);
         let (reader, placed) = if is_v4 {
             let file = Mf4File::open(path).map_err(fault)?;
-            let placed = channels_of_v4(&file);
+            let placed = channels_of_v4(&file, path);
             (Reader::V4(Box::new(file)), placed)
         } else {
             let file = Mdf3File::open(path).map_err(fault)?;
             let placed = channels_of_v3(&file);
             (Reader::V3(Box::new(file)), placed)
         };
-        let (channels, places) = placed.into_iter().unzip();
+        let (channels, places) = tell_apart(placed).into_iter().unzip();
         Ok(Self {
             source,
             reader,
@@ -126,10 +130,11 @@ impl ChannelFile for MdfFile {
                     .channel_physical(data_group, group, index)
                     .map_err(fault)?;
                 let times_s = match times {
-                    Some(times) => file
-                        .channel_physical(data_group, group, times)
-                        .map_err(fault)?
-                        .to_f64(),
+                    Some(times) => {
+                        let unit = &groups[group].channels[times].unit;
+                        let times = file.channel_physical(data_group, group, times);
+                        in_seconds(times.map_err(fault)?.to_f64(), unit)
+                    }
                     None => Vec::new(),
                 };
                 (times_s, values.to_f64())
@@ -149,17 +154,27 @@ impl ChannelFile for MdfFile {
     }
 }
 
-fn channels_of_v4(file: &Mf4File) -> Vec<(LogChannel, [usize; 3])> {
+/// A channel, the position of its group and its own in it, and the names by which it is told from others.
+struct Placed {
+    channel: LogChannel,
+    place: [usize; 3],
+    labels: [String; 3],
+}
+
+fn channels_of_v4(file: &Mf4File, path: &Path) -> Vec<Placed> {
+    let mut units = UnitReader::open(path);
     let mut channels = Vec::new();
+    let mut number = 0;
     for (data_group, data) in file.data_groups().iter().enumerate() {
         for (group_index, group) in data.channel_groups.iter().enumerate() {
+            number += 1;
             for (index, channel) in group.channels.iter().enumerate() {
                 if channel.is_master() {
                     continue;
                 }
                 let found = LogChannel {
                     name: channel.name.clone(),
-                    unit: unit(&channel.unit),
+                    unit: unit(&channel.unit).or_else(|| units.of_conversion(channel)),
                     samples: group.sample_count as usize,
                     fault: match channel.value_kind().is_numeric() {
                         false => Some("it has texts, or values converted to texts"),
@@ -167,29 +182,50 @@ fn channels_of_v4(file: &Mf4File) -> Vec<(LogChannel, [usize; 3])> {
                         true => None,
                     },
                 };
-                channels.push((found, [data_group, group_index, index]));
+                let source = channel.source.as_ref().or(group.source.as_ref());
+                let source = source.map(|source| match source.name.trim() {
+                    "" => source.path.clone(),
+                    name => name.to_owned(),
+                });
+                channels.push(Placed {
+                    channel: found,
+                    place: [data_group, group_index, index],
+                    labels: [
+                        group.acquisition_name.clone(),
+                        source.unwrap_or_default(),
+                        format!("group {number}"),
+                    ],
+                });
             }
         }
     }
     channels
 }
 
-fn channels_of_v3(file: &Mdf3File) -> Vec<(LogChannel, [usize; 3])> {
+fn channels_of_v3(file: &Mdf3File) -> Vec<Placed> {
     let mut channels = Vec::new();
+    let mut number = 0;
     for (data_group, data) in file.data_groups().iter().enumerate() {
         for (group_index, group) in data.channel_groups.iter().enumerate() {
-            let measured = group.channels.iter().enumerate();
-            channels.extend(measured.filter(|(_, channel)| !channel.is_time()).map(
-                |(index, channel)| {
-                    let found = LogChannel {
-                        name: channel.name.clone(),
-                        unit: unit(&channel.unit),
-                        samples: group.cycle_count as usize,
-                        fault: None,
-                    };
-                    (found, [data_group, group_index, index])
-                },
-            ));
+            number += 1;
+            for (index, channel) in group.channels.iter().enumerate() {
+                if channel.is_time() {
+                    continue;
+                }
+                let found = LogChannel {
+                    name: channel.name.clone(),
+                    unit: unit(&channel.unit),
+                    samples: group.cycle_count as usize,
+                    fault: None,
+                };
+                let comment = group.comment.lines().next().unwrap_or_default();
+                let labels = [comment.to_owned(), String::new(), format!("group {number}")];
+                channels.push(Placed {
+                    channel: found,
+                    place: [data_group, group_index, index],
+                    labels,
+                });
+            }
         }
     }
     channels
@@ -200,13 +236,65 @@ fn unit(text: &str) -> Option<String> {
     (!text.is_empty()).then(|| text.to_owned())
 }
 
+/// Adds the group to the names that occur several times. Tools create groups without samples for signals that were not
+/// sent: these are left out.
+fn tell_apart(placed: Vec<Placed>) -> Vec<(LogChannel, [usize; 3])> {
+    let mut equals: HashMap<String, Vec<usize>> = HashMap::new();
+    for (index, found) in placed.iter().enumerate() {
+        let named = equals.entry(found.channel.name.clone()).or_default();
+        named.push(index);
+    }
+    let mut names: Vec<Option<String>> = vec![None; placed.len()];
+    for (name, mut indices) in equals {
+        if indices
+            .iter()
+            .any(|&index| placed[index].channel.samples > 0)
+        {
+            indices.retain(|&index| placed[index].channel.samples > 0);
+        }
+        if let [only] = indices[..] {
+            names[only] = Some(name);
+            continue;
+        }
+        let label = |index: usize, kind: usize| {
+            let words = placed[index].labels[kind].split_whitespace();
+            words.collect::<Vec<_>>().join(" ")
+        };
+        let tells = |kind: &usize| {
+            let labels: HashSet<String> = indices.iter().map(|&i| label(i, *kind)).collect();
+            labels.len() == indices.len() && !labels.contains("")
+        };
+        let kind = (0..3).find(tells);
+        for (count, &index) in indices.iter().enumerate() {
+            let label = match kind {
+                Some(kind) => label(index, kind),
+                None => format!("{} #{}", label(index, 2), count + 1),
+            };
+            names[index] = Some(format!("{name}{OF_GROUP}{label}"));
+        }
+    }
+    let named = placed.into_iter().zip(names);
+    let named = named.filter_map(|(found, name)| {
+        let name = name?;
+        let channel = LogChannel {
+            name,
+            ..found.channel
+        };
+        Some((channel, found.place))
+    });
+    named.collect()
+}
+
 fn samples_of_v4(file: &Mf4File, channel: &Channel) -> falcon_mdf::Result<(Vec<f64>, Vec<f64>)> {
     let group =
         &file.data_groups()[channel.data_group_index].channel_groups[channel.channel_group_index];
-    if !group.master_channel().is_some_and(Channel::is_time_channel) {
+    let Some(times) = group
+        .master_channel()
+        .filter(|times| times.is_time_channel())
+    else {
         return Ok((Vec::new(), file.signal(channel)?.values_f64()?));
-    }
-    let times_s = file.channel_timestamps(channel)?;
+    };
+    let times_s = in_seconds(file.channel_timestamps(channel)?, &times.unit);
     let signal = file.signal(channel)?;
     let mut values = signal.values_f64()?;
     for (value, is_valid) in values.iter_mut().zip(signal.validity().unwrap_or_default()) {
@@ -215,6 +303,13 @@ fn samples_of_v4(file: &Mf4File, channel: &Channel) -> falcon_mdf::Result<(Vec<f
         }
     }
     Ok((times_s, values))
+}
+
+/// Times that state another unit, though the standard demands seconds.
+fn in_seconds(mut times: Vec<f64>, unit: &str) -> Vec<f64> {
+    let size_s = unit_size_s(unit);
+    times.iter_mut().for_each(|time| *time *= size_s);
+    times
 }
 
 fn unreadable(source: &SourceFile, channel: &str, error: &falcon_mdf::Mf4Error) -> InputError {

@@ -8,12 +8,12 @@ use hitch_input::source_file::SourceFile;
 use crate::bus_log::Format;
 use crate::mdf_log::MdfFile;
 use crate::number_log::NumberLog;
-use crate::scale::{Scale, above_air, is_unit_of};
-use crate::table::{COLUMNS, TIME, TIMES as TIME_COLUMN, column};
+use crate::scale::{above_air, is_unit_of};
+use crate::table::{COLUMNS, TIME, column};
 use crate::{CampaignError, bus_log, channel_log, columns, csv_log, mdf_log};
 
 pub use crate::bus_log::Signals;
-pub use crate::time_base::{is_in, is_time_name, words};
+pub use crate::time_base::{is_in, is_time_name, unit_size_s, words};
 
 /// A column of a table, or a channel.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,8 +30,19 @@ pub struct LogColumn {
     pub is_clock: bool,
     /// Name of its column of times, which for one of times is its own; `None` if there is none, or it has its own times.
     pub times: Option<String>,
+    /// Time from its first sample to its last one, s, if it has its own times.
+    pub lasts_s: Option<f64>,
     /// Why it cannot be used; `None` if it can.
     pub fault: Option<String>,
+}
+
+/// What separates the name of a channel from that of its group, if others have the same name.
+pub const OF_GROUP: &str = " @ ";
+
+/// The name of a channel without that of its group; `None` if it has no group.
+#[must_use]
+pub fn without_group(name: &str) -> Option<&str> {
+    name.split_once(OF_GROUP).map(|(plain, _)| plain)
 }
 
 /// Kind of a log.
@@ -47,7 +58,12 @@ pub enum Survey {
     /// A table with the project's own names.
     Own,
     /// Channels with their own times.
-    Channels(Vec<LogColumn>),
+    Channels {
+        /// The channels with samples.
+        columns: Vec<LogColumn>,
+        /// What was assumed about their times, one line each.
+        notes: Vec<String>,
+    },
     /// Frames of a bus.
     Bus,
 }
@@ -59,7 +75,9 @@ impl Survey {
     /// The log cannot be read.
     pub fn of(path: &Path) -> Result<Self, CampaignError> {
         if mdf_log::is_mdf(path) {
-            return Ok(Self::Channels(channel_log::survey(&MdfFile::open(path)?)));
+            let columns = channel_log::survey(&MdfFile::open(path)?);
+            let notes = Vec::new();
+            return Ok(Self::Channels { columns, notes });
         }
         if let Some(log) = NumberLog::open(path)? {
             return Ok(log.survey());
@@ -108,15 +126,6 @@ pub fn fits(unit: &str, name: &str) -> bool {
 #[must_use]
 pub fn is_absolute(unit: &str) -> bool {
     above_air(unit).is_some()
-}
-
-/// Size of a unit of time, s; 1 for one that is not known.
-#[must_use]
-pub fn unit_size_s(unit: &str) -> f64 {
-    match Scale::of(unit, &TIME_COLUMN) {
-        Ok(Scale::Line { factor, .. }) => factor,
-        _ => 1.0,
-    }
 }
 
 /// The usual units of a column of a run, the one of the format first.

@@ -3,6 +3,9 @@
 //! A log may have a column of times for each rate. A column belongs to the times whose name it shares, else to those before
 //! it; the number of samples decides if these do not fit.
 
+use crate::scale::Scale;
+use crate::table::TIMES as TIME_COLUMN;
+
 /// Part of the steps that rise in a column of times: one that does not rise everywhere is refused later, with its line.
 const RISES: f64 = 0.9;
 /// Part by which the number of samples of a column may fall short of that of its times: dropouts.
@@ -134,6 +137,20 @@ pub fn base_of(bases: &[Option<usize>], column: usize, main: usize, lift: Option
     match own {
         Some(own) if Some(own) != of_lift => own,
         _ => main,
+    }
+}
+
+/// Conversion of times other than the assigned ones: by their own unit, else as the assigned ones.
+pub fn scale(own: Option<&str>, main: Option<Scale>) -> Option<Scale> {
+    own.map_or(main, |unit| Scale::of(unit, &TIME_COLUMN).ok())
+}
+
+/// Size of a unit of time, s; 1 for one that is not known.
+#[must_use]
+pub fn unit_size_s(unit: &str) -> f64 {
+    match Scale::of(unit, &TIME_COLUMN) {
+        Ok(Scale::Line { factor, .. }) => factor,
+        _ => 1.0,
     }
 }
 

@@ -1,9 +1,8 @@
 //! Assigns a log's columns to a run's columns: by the user's mapping, else by names, units and values.
 
-use hitch_campaign::survey::{
-    LogColumn, TIMES, check_source, fits, is_absolute, is_in, run_columns, words,
-};
+use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, is_absolute, run_columns};
 
+use super::doubts::{is_percentage, is_position, not_usable, two_points, why_not};
 use super::times::time;
 use super::words::{CHANNELS, Words};
 
@@ -13,6 +12,10 @@ const MOST_RAD: f64 = 3.2;
 const SURELY_RAD: f64 = MOST_RAD;
 /// Larger values of a current are in milliampere.
 const MOST_A: f64 = 20.0;
+/// The column of the angle.
+const ANGLE: &str = "rocker_angle_deg";
+/// Reason of a column that the user assigned.
+const BY_USER: &str = "given by --map";
 /// Larger values of a pressure are not in bar.
 const MOST_BAR: f64 = 400.0;
 
@@ -38,6 +41,12 @@ pub struct Taken {
     pub reason: String,
     /// Whether name or unit is an assumption, which the user should check.
     pub is_assumed: bool,
+}
+
+impl Taken {
+    fn is_proposed(&self) -> bool {
+        self.reason != BY_USER
+    }
 }
 
 /// Assignment for a log.
@@ -100,7 +109,7 @@ impl Mapping {
                 left_out.push(channel);
                 continue;
             }
-            let named = mapping.name(channel, source, "given by --map");
+            let named = mapping.name(channel, source, BY_USER);
             let named = named.and_then(|name| {
                 let fault = (kind != Kind::Signals)
                     .then(|| not_usable(columns, &name))
@@ -145,6 +154,14 @@ impl Mapping {
             }
         }
         mapping.note(columns, &left_out);
+        let times = match kind {
+            Kind::Table => mapping.note_other_times(columns),
+            Kind::Channels => mapping.check_own_times(columns, named),
+            Kind::Signals => Ok(()),
+        };
+        if let Err(implausible) = times {
+            untold.get_or_insert(implausible);
+        }
         let complete = mapping.check(columns);
         mapping.order();
         (mapping, untold.or(complete.err()))
@@ -232,12 +249,28 @@ impl Mapping {
                     taken.channel
                 ));
             }
+            if let Some(column) = column.filter(|column| {
+                let is_proposed = taken.is_proposed();
+                is_proposed && taken.channel == ANGLE && is_percentage(&column.values)
+            }) {
+                notes.push(format!(
+                    "assumed: \"{}\" is in {} as the log states, though its values from 0 to 100 rest on an end as \
+                     percentages do; for percentages give {}",
+                    column.name,
+                    unit.unwrap_or("deg"),
+                    two_points(ANGLE, &column.name, "%")
+                ));
+            }
         }
         self.notes = notes;
     }
 
     /// The column of the log that is assigned to a column of the run.
-    fn source_of<'c>(&self, columns: &'c [LogColumn], channel: &str) -> Option<&'c LogColumn> {
+    pub(super) fn source_of<'c>(
+        &self,
+        columns: &'c [LogColumn],
+        channel: &str,
+    ) -> Option<&'c LogColumn> {
         let taken = self.taken.iter().find(|taken| taken.channel == channel)?;
         let (name, _) = check_source(channel, &taken.source).ok()?;
         columns.iter().find(|column| column.name == name)
@@ -287,65 +320,13 @@ fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
     }
 }
 
-/// Why a column that the user names cannot be used.
-fn not_usable(columns: &[LogColumn], name: &str) -> Option<String> {
-    let plain = |column: &LogColumn| {
-        let number = column
-            .name
-            .rsplit_once(" #")
-            .map(|(plain, _)| plain.to_owned());
-        number.as_deref() == Some(name)
-    };
-    if let Some(column) = columns.iter().find(|column| column.name == name) {
-        return column.fault.clone();
+/// A column that is one of several: its name, unit and number of samples.
+fn described(column: &LogColumn) -> String {
+    let unit = column.unit.as_deref().unwrap_or("no unit");
+    match column.values.iter().filter(|value| !value.is_nan()).count() {
+        0 => format!("\"{}\" ({unit})", column.name),
+        samples => format!("\"{}\" ({unit}, {samples} samples)", column.name),
     }
-    if columns.iter().any(plain) {
-        return Some(format!(
-            "several columns have this name; write {name} #1 or {name} #2"
-        ));
-    }
-    let (known, unit) = name.rsplit_once(':')?;
-    let is_known = columns.iter().any(|column| column.name == known.trim());
-    is_known.then(|| format!("\"{unit}\" is not a unit of it"))
-}
-
-/// Why a column of a quantity was not proposed; `None` for an unknown reason.
-fn why_not(channel: &str, column: &LogColumn) -> Option<String> {
-    if let Some(fault) = &column.fault {
-        return Some(fault.clone());
-    }
-    let has_numbers = column.values.iter().any(|value| value.is_finite());
-    match column.unit.as_deref() {
-        _ if !has_numbers && !column.values.is_empty() => Some("it contains no numbers".to_owned()),
-        Some(unit @ ("%" | "V")) => Some(format!(
-            "it is in {unit}; give two points, as in --map {channel}=\"{}:{unit} 0=50 100=120\"",
-            column.name
-        )),
-        Some(unit) if !fits(unit, channel) => Some(format!("{unit} is not a unit of {channel}")),
-        _ => Some(format!(
-            "several columns may be {channel}; assign one with --map {channel}=\"{}\"",
-            column.name
-        )),
-    }
-}
-
-/// Whether a column is one of a cylinder's or hitch's position, whose unit cannot be assumed.
-fn is_position(name: &str) -> bool {
-    const ANGLES: [&str; 4] = ["winkel", "angle", "phi", "rocker"];
-    let words = words(name);
-    !ANGLES.iter().any(|known| is_in(known, &words))
-}
-
-/// Whether values run within 0 to 100 and rest on an end: a percentage.
-fn is_percentage(values: &[f64]) -> bool {
-    const REST: usize = 5;
-    let known: Vec<f64> = values
-        .iter()
-        .copied()
-        .filter(|value| value.is_finite())
-        .collect();
-    let at = |end: f64| known.iter().filter(|value| **value == end).count();
-    known.iter().all(|value| (0.0..=100.0).contains(value)) && at(100.0).max(at(0.0)) >= REST
 }
 
 /// Assignment of a log's column.
@@ -367,12 +348,14 @@ fn proposal<'c>(
             return match is_needed {
                 true => Err(Untold {
                     what: format!(
-                        "{} may be \"{}\" or \"{}\"",
-                        words.channel, first.column.name, second.column.name
+                        "{} may be {} or {}",
+                        words.channel,
+                        described(first.column),
+                        described(second.column)
                     ),
                     mend: format!(
-                        "assign it, as in --map {}=\"{}\"",
-                        words.channel, first.column.name
+                        "assign it, as in --map {0}=\"{1}\" or --map {0}=\"{2}\"",
+                        words.channel, first.column.name, second.column.name
                     ),
                 }),
                 false => Ok(None),
@@ -382,7 +365,7 @@ fn proposal<'c>(
     };
     let column = best.column;
     let is_implausible = column.unit.is_none()
-        && words.channel == "rocker_angle_deg"
+        && words.channel == ANGLE
         && (is_position(&column.name) || is_percentage(&column.values));
     if is_implausible && kind != Kind::Signals {
         return Err(Untold {
@@ -391,9 +374,10 @@ fn proposal<'c>(
                 column.name
             ),
             mend: format!(
-                "give it, as in --map {0}=\"{1}:deg\", in percent with two points --map {0}=\"{1}:% 0=50 100=120\", \
-                 or leave it out with --map {0}=",
-                words.channel, column.name
+                "give it, as in --map {0}=\"{1}:deg\", in percent with two points {2}, or leave it out with --map {0}=",
+                words.channel,
+                column.name,
+                two_points(words.channel, &column.name, "%")
             ),
         });
     }

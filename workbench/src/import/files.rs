@@ -112,7 +112,7 @@ pub fn columns(log: &Path) -> Result<Option<Columns>, Error> {
     let (columns, notes, kind) = match Survey::of(log)? {
         Survey::Own | Survey::Bus => return Ok(None),
         Survey::Table { columns, notes } => (columns, notes, Kind::Table),
-        Survey::Channels(columns) => (columns, Vec::new(), Kind::Channels),
+        Survey::Channels { columns, notes } => (columns, notes, Kind::Channels),
     };
     Ok(Some(Columns {
         heading: log.display().to_string(),

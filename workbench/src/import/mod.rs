@@ -5,8 +5,11 @@ pub mod columns;
 pub mod conditions;
 pub mod cuts;
 pub mod dialogue;
+mod doubts;
 pub mod files;
 pub mod manifest;
+#[cfg(test)]
+mod tests;
 pub mod times;
 pub mod words;
 

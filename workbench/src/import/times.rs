@@ -1,8 +1,8 @@
 //! The times of a log: their column, and their unit if the log states none.
 
-use hitch_campaign::survey::{LogColumn, TIMES, fits, is_time_name, unit_size_s};
+use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, is_time_name, unit_size_s};
 
-use super::{Taken, Untold};
+use super::{Mapping, Taken, Untold};
 
 /// Longest step of a log whose unit is assumed, s.
 const LONGEST_STEP_S: f64 = 0.5;
@@ -108,22 +108,99 @@ fn check_unit(column: &LogColumn, unit: &str, size: f64) -> Result<(), Untold> {
     let [first, .., last] = known[..] else {
         return Ok(());
     };
-    let lasts_s = (last - first) * size;
-    let step_s = lasts_s / (known.len() as f64 - 1.0);
-    if lasts_s >= SHORTEST_RUN_S / 10.0 && step_s < 1.0 {
+    let Err(no_run) = check_run((last - first) * size, known.len()) else {
         return Ok(());
-    }
+    };
     Err(Untold {
         what: format!(
-            "the times \"{}\" would last {lasts_s:.4} s at {:.4} Hz, which is no run of a hitch; the log states {unit}",
-            column.name,
-            1.0 / step_s
+            "the times \"{}\" {no_run}; the log states {unit}",
+            column.name
         ),
         mend: format!(
             "give the unit, as in --map {TIMES}=\"{}:{unit}\"",
             column.name
         ),
     })
+}
+
+/// Whether times are those of a run; what they would be otherwise.
+fn check_run(lasts_s: f64, samples: usize) -> Result<(), String> {
+    let step_s = lasts_s / (samples as f64 - 1.0);
+    if lasts_s >= SHORTEST_RUN_S / 10.0 && step_s < 1.0 {
+        return Ok(());
+    }
+    let rate_hz = 1.0 / step_s;
+    Err(format!(
+        "would last {lasts_s:.4} s at {rate_hz:.4} Hz, which is no run of a hitch"
+    ))
+}
+
+/// Checks the own times of a channel.
+///
+/// # Errors
+/// They do not make a run of a hitch.
+fn check_own(column: &LogColumn) -> Result<(), Untold> {
+    let name = &column.name;
+    let Some(lasts_s) = column.lasts_s else {
+        return Ok(());
+    };
+    check_run(lasts_s, column.values.len()).map_err(|no_run| Untold {
+        what: format!("the samples of \"{name}\" {no_run}: their times are probably not in s"),
+        mend: format!(
+            "save the file with times in s, or accept them with --map lift_current_a=\"{name}:{}\"",
+            column.unit.as_deref().unwrap_or("A")
+        ),
+    })
+}
+
+/// What is assumed of times at other rates than those of the lift current, `main`, which are in `unit` if it is known.
+///
+/// # Errors
+/// They last much longer or shorter than `main`.
+fn others(
+    main: &LogColumn,
+    unit: Option<&str>,
+    used: &[&LogColumn],
+) -> Result<Vec<String>, Untold> {
+    /// Largest plausible ratio of the durations of one recording.
+    const RATIO: f64 = 10.0;
+    let lasts = |column: &LogColumn| {
+        let mut known = column.values.iter().filter(|value| value.is_finite());
+        let first = known.next()?;
+        Some(known.next_back()? - first)
+    };
+    let mut notes = Vec::new();
+    for other in used.iter().filter(|other| !other.is_clock) {
+        let name = &other.name;
+        let own = unit_of_time(other);
+        let assumed = own.or(unit);
+        if let (Some(own_unit), Some(unit)) = (assumed, unit)
+            && let (Some(own_lasts), Some(main_lasts)) = (lasts(other), lasts(main))
+        {
+            let [own_s, main_s] = [(own_lasts, own_unit), (main_lasts, unit)]
+                .map(|(lasts, unit)| lasts * unit_size_s(unit));
+            if !(main_s / RATIO..=main_s * RATIO).contains(&own_s) {
+                return Err(Untold {
+                    what: format!(
+                        "the times \"{name}\" would last {own_s:.4} s in {own_unit}, and \"{}\" {main_s:.4} s in {unit}",
+                        main.name
+                    ),
+                    mend: format!(
+                        "write the unit behind the name in the header, as in \"{name} [ms]\", or leave the columns at \
+                         these times out with --map CHANNEL="
+                    ),
+                });
+            }
+        }
+        if own.is_none() {
+            let unit = unit.unwrap_or("the unit");
+            notes.push(format!(
+                "assumed: \"{name}\" is in {unit}, as \"{}\"; the log states no unit",
+                main.name
+            ));
+        }
+    }
+    Ok(notes)
 }
 
 /// The column of the times: that of the lift current, which the rows of a run are.
@@ -177,6 +254,47 @@ pub fn time(columns: &[LogColumn], lift: Option<&LogColumn>) -> Result<Option<Ta
         return Ok(Some(taken(source, &reason, true)));
     }
     Ok(clock.map(|column| taken(column.name.clone(), "dates or times of day", false)))
+}
+
+impl Mapping {
+    /// Notes the times of columns at other rates.
+    pub(super) fn note_other_times(&mut self, columns: &[LogColumn]) -> Result<(), Untold> {
+        let time = self.taken.iter().find(|taken| taken.channel == TIMES);
+        let Some((name, unit)) = time.and_then(|time| check_source(TIMES, &time.source).ok())
+        else {
+            return Ok(());
+        };
+        let Some(main) = columns.iter().find(|column| column.name == name) else {
+            return Ok(());
+        };
+        let of_lift = self.source_of(columns, "lift_current_a");
+        let rows = of_lift.and_then(|lift| lift.times.clone());
+        let mut used: Vec<&LogColumn> = Vec::new();
+        for taken in &self.taken {
+            let column = self.source_of(columns, taken.channel);
+            let base = column.and_then(|column| column.times.as_ref());
+            let is_other = base.is_some() && base != Some(&name) && base != rows.as_ref();
+            let base = columns.iter().find(|column| Some(&column.name) == base);
+            used.extend(base.filter(|base| is_other && !used.contains(base)));
+        }
+        let notes = others(main, unit.as_deref().or(main.unit.as_deref()), &used)?;
+        self.notes.extend(notes);
+        Ok(())
+    }
+
+    /// Checks the times of the lift current's channel, unless the user assigned it.
+    pub(super) fn check_own_times(
+        &self,
+        columns: &[LogColumn],
+        named: &[(String, String)],
+    ) -> Result<(), Untold> {
+        const LIFT: &str = "lift_current_a";
+        let is_given = named.iter().any(|(channel, _)| channel == LIFT);
+        match self.source_of(columns, LIFT) {
+            Some(column) if !is_given => check_own(column),
+            _ => Ok(()),
+        }
+    }
 }
 
 fn unit_of_time(column: &LogColumn) -> Option<&str> {

@@ -1,6 +1,6 @@
 //! Column names in German and English.
 
-use hitch_campaign::survey::{LogColumn, is_in, words};
+use hitch_campaign::survey::{LogColumn, is_in, without_group, words};
 
 /// Words in the name of a log's column that support or exclude a run's column.
 #[derive(Debug)]
@@ -143,7 +143,8 @@ impl Words {
     /// Score of a name: quantity 1, channel 2.
     #[must_use]
     pub fn score(&self, name: &str) -> i32 {
-        let words = words(name);
+        // The name of a group is that of a rate or a device.
+        let words = words(without_group(name).unwrap_or(name));
         let has = |known: &[&str]| known.iter().any(|known| is_in(known, &words));
         if has(self.not) {
             return 0;

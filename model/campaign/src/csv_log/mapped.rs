@@ -12,8 +12,8 @@ use crate::csv_log::clock::Times;
 use crate::csv_log::layout::{Layout, Row};
 use crate::scale::{Scale, is_time};
 use crate::series::{Series, values};
-use crate::table::{Cells, Column, LIFT, Samples, TIME, TIMES, Table};
-use crate::time_base::base_of;
+use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
+use crate::time_base::{self, base_of};
 
 /// A mapped column.
 struct MappedColumn {
@@ -115,7 +115,8 @@ impl<'a> Reader<'a> {
             times_s: Vec::new(),
             bytes: Vec::new(),
         };
-        let mut times = vec![column_of(main, time.scale(unit(main)).ok())];
+        let main_scale = time.scale(unit(main)).ok();
+        let mut times = vec![column_of(main, main_scale)];
         let lift = found.iter().find(|(wanted, _)| wanted.column.name == LIFT);
         let lift = lift.map(|(_, index)| *index);
         let mut columns = Vec::new();
@@ -129,8 +130,7 @@ impl<'a> Reader<'a> {
             let known = times.iter().position(|times| times.index == base);
             let place = known.unwrap_or(times.len());
             if known.is_none() {
-                let scale = unit(base).and_then(|unit| Scale::of(unit, &TIMES).ok());
-                times.push(column_of(base, scale));
+                times.push(column_of(base, time_base::scale(unit(base), main_scale)));
             }
             columns.push(MappedColumn {
                 column: wanted.column,

@@ -16,10 +16,10 @@ use crate::CampaignError;
 use crate::channel_log::{self, ChannelFile, LogChannel};
 use crate::columns::Source;
 use crate::csv_log::clock::Times;
-use crate::scale::{Scale, spelling};
+use crate::scale::spelling;
 use crate::series::Series;
 use crate::survey::{LogColumn, Survey, fits};
-use crate::table::{TIME, TIMES};
+use crate::table::TIME;
 use crate::time_base::{self, Seen};
 
 /// Most numbers of a file: as text they would fill the longest file that is read.
@@ -93,7 +93,13 @@ impl NumberLog {
                 let notes = time_base::notes(&seen, &bases);
                 Survey::Table { columns, notes }
             }
-            false => Survey::Channels(timed),
+            false => {
+                let note = "assumed s: the times of its series, which state no unit";
+                Survey::Channels {
+                    columns: timed,
+                    notes: vec![note.to_owned()],
+                }
+            }
         }
     }
 
@@ -149,10 +155,11 @@ impl NumberLog {
             let mend = "assign the times of this column, or save it as a struct with the fields Time and Data";
             return Err(self.source.error(what, mend));
         }
-        let logged = found.unit.as_deref();
+        let unit = |index: usize| self.columns[index].unit.as_deref();
+        let main_scale = time.scale(unit(main)).ok();
         let scale = match base == main {
-            true => time.scale(logged).ok(),
-            false => logged.and_then(|unit| Scale::of(unit, &TIMES).ok()),
+            true => main_scale,
+            false => time_base::scale(unit(base), main_scale),
         };
         Ok((&found.values, Times::new(scale)))
     }
@@ -164,6 +171,7 @@ fn listed(column: &NumberColumn) -> LogColumn {
         name: column.name.clone(),
         unit: unit.map(|unit| spelling(unit).to_owned()),
         values: column.values.clone(),
+        lasts_s: column.times.as_deref().and_then(channel_log::lasts),
         ..LogColumn::default()
     }
 }

@@ -10,6 +10,7 @@ use hitch_plant::Channel;
 use proptest::prelude::*;
 use tempfile::TempDir;
 
+mod groups;
 mod shape;
 
 const HEAD: &str =
