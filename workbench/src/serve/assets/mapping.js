@@ -83,6 +83,7 @@ function table(group, signals) {
     element("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": `Columns of ${group.files[0]}` },
       element("table", {}, head(["signal", "column of the log", "unit", "confidence", "reason"]),
         element("tbody", {}, ...rows.map((one) => one.shown)))),
+    ...group.notes.map((note) => element("p", { class: "note" }, note)),
     element("p", { class: "note" }, others > 0 ? `${count(others, "other column")} ${others === 1 ? "is" : "are"} ignored.` : ""));
   return { shown, read: () => rows.flatMap((one) => one.read()) };
 }

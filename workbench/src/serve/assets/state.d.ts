@@ -190,5 +190,6 @@ interface ProposedGroup {
   own_units: boolean;
   columns: { name: string; unit: string | null }[];
   taken: { channel: string; column: string; unit: string | null; reason: string; assumed: boolean }[];
+  notes: string[];
   untold: string | null;
 }

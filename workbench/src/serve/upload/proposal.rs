@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::error::Error;
 use crate::import::files::columns;
-use crate::import::{Files, Kind, Mapping, Taken, Untold, load_in_name};
+use crate::import::{Columns, Files, Kind, Mapping, Taken, Untold, load_in_name};
 
 /// Name of a campaign's manifest.
 pub const MANIFEST: &str = "campaign.toml";
@@ -44,6 +44,8 @@ pub struct Group {
     pub kind: Kind,
     /// The columns, without their values.
     pub columns: Vec<LogColumn>,
+    /// What was assumed, and what is left out; one line each.
+    pub notes: Vec<String>,
     /// What could be determined.
     pub mapping: Mapping,
     /// What could not be determined.
@@ -76,15 +78,11 @@ impl Proposal {
             let logs = files.logs.iter().enumerate();
             let buses = logs.filter(|(_, log)| is_bus(log));
             let logs = buses.map(|(index, _)| index).collect();
-            add(
-                &mut groups,
-                Group::new(signals.heading, logs, signals.kind, signals.columns),
-            );
+            add(&mut groups, Group::new(signals, logs));
         }
         for (index, log) in files.logs.iter().enumerate() {
             if let Some(found) = columns(log)? {
-                let group = Group::new(found.heading, vec![index], found.kind, found.columns);
-                add(&mut groups, group);
+                add(&mut groups, Group::new(found, vec![index]));
             }
         }
         Ok(Self::Logs { files, groups })
@@ -129,7 +127,7 @@ fn check_files(folder: &Path) -> Result<(), Error> {
 fn add(groups: &mut Vec<Group>, group: Group) {
     let alike = |known: &&mut Group| {
         (known.kind, &known.columns, &known.mapping) == (group.kind, &group.columns, &group.mapping)
-            && known.untold == group.untold
+            && (&known.untold, &known.notes) == (&group.untold, &group.notes)
     };
     match groups.iter_mut().find(alike) {
         Some(known) => {
@@ -141,16 +139,25 @@ fn add(groups: &mut Vec<Group>, group: Group) {
 }
 
 impl Group {
-    fn new(heading: String, logs: Vec<usize>, kind: Kind, mut columns: Vec<LogColumn>) -> Self {
+    fn new(found: Columns, logs: Vec<usize>) -> Self {
+        let Columns {
+            heading,
+            kind,
+            mut columns,
+            mut notes,
+        } = found;
         let (mapping, untold) = Mapping::draft(&columns, kind, &[]);
-        columns
-            .iter_mut()
-            .for_each(|column| column.values = Vec::new());
+        notes.extend(mapping.notes.iter().cloned());
+        for column in &mut columns {
+            column.values = Vec::new();
+            column.lasts_s = None;
+        }
         Self {
             headings: vec![heading],
             logs,
             kind,
             columns,
+            notes,
             mapping,
             untold,
         }
@@ -179,6 +186,7 @@ impl Group {
             "own_units": self.kind == Kind::Signals,
             "columns": self.columns.iter().map(column).collect::<Vec<_>>(),
             "taken": self.mapping.taken.iter().map(taken).collect::<Vec<_>>(),
+            "notes": self.notes,
             "untold": self.untold.as_ref().map(|untold| &untold.what),
         })
     }
