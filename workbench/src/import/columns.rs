@@ -2,7 +2,7 @@
 
 use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, is_absolute, run_columns};
 
-use super::doubts::{is_percentage, is_position, not_usable, two_points, why_not};
+use super::doubts::{is_percentage, is_position, not_usable, says_degrees, two_points, why_not};
 use super::times::time;
 use super::words::{CHANNELS, Words};
 
@@ -366,6 +366,7 @@ fn proposal<'c>(
     let column = best.column;
     let is_implausible = column.unit.is_none()
         && words.channel == ANGLE
+        && !says_degrees(&column.name)
         && (is_position(&column.name) || is_percentage(&column.values));
     if is_implausible && kind != Kind::Signals {
         return Err(Untold {

@@ -57,6 +57,15 @@ pub fn is_position(name: &str) -> bool {
     !ANGLES.iter().any(|known| is_in(known, &words))
 }
 
+/// Whether a name ends in the unit, as in `angle_deg`.
+pub fn says_degrees(name: &str) -> bool {
+    const DEGREES: [&str; 4] = ["deg", "degree", "degrees", "grad"];
+    let words = words(name);
+    words
+        .last()
+        .is_some_and(|last| DEGREES.contains(&last.as_str()))
+}
+
 /// Whether values run within 0 to 100 and rest on an end: a percentage.
 pub fn is_percentage(values: &[f64]) -> bool {
     const REST: usize = 5;

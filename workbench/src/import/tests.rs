@@ -124,6 +124,9 @@ fn a_position_without_a_unit_is_refused() {
         .map(|value| value.min(100.0))
         .collect();
     assert!(refused(&columns, &[]).contains("has no unit"));
+    columns[3].name = "rocker_angle_deg".to_owned();
+    assert!(has(&proposed(&columns, &[]), "rocker_angle_deg"));
+    columns[3].name = "Rocker Angle".to_owned();
     columns[3].unit = Some("deg".to_owned());
     let notes = proposed(&columns, &[]).notes.join("\n");
     assert!(
