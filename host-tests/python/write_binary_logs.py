@@ -19,11 +19,11 @@ EPOCH_S = 1_763_700_000
 def write_mat(folder, log):
     time_s, lift_a, lower_a, pressure_bar, angle_deg = log.T
     plain = {
-        "Zeit": time_s,
+        "Zeit_s": time_s,
         "Strom_Heben": lift_a * 1000,
         "Strom_Senken": (lower_a * 1000).round().astype("int16"),
         "Druck_Zylinder": pressure_bar.astype("f4"),
-        "Winkel": angle_deg,
+        "Winkel_deg": angle_deg,
         "Seriennummer": 17,
         "Bemerkung": "Öl warm",
     }
@@ -49,7 +49,7 @@ def write_mat(folder, log):
     scipy.io.savemat(folder / "series.mat", timed, do_compression=True, oned_as="column")
     yield "series.mat"
     signals = numpy.zeros((4,), dtype=[("values", "O"), ("label", "O")])
-    labels = ["lift current", "lower current", "cylinder pressure", "rocker angle"]
+    labels = ["lift current", "lower current", "cylinder pressure", "rocker angle deg"]
     for index, (label, values) in enumerate(zip(labels, log.T[1:])):
         signals[index] = (values.reshape(-1, 1), label)
     simulink = {"out": {"time": time_s.reshape(-1, 1), "signals": signals}}
@@ -73,7 +73,7 @@ def write_parquet(folder, log):
             "LiftCurrent [mA]": pyarrow.array(lift_a * 1000, mask=gap),
             "LowerCurrent [mA]": (lower_a * 1000).round().astype("i4"),
             "Cylinder Pressure [psi]": (pressure_bar * 100 / PSI_KPA).astype("f4"),
-            "Rocker Angle": angle_deg,
+            "Rocker Angle [deg]": angle_deg,
         }
     )
     for name, options in {

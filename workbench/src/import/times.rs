@@ -1,6 +1,8 @@
 //! The times of a log: their column, and their unit if the log states none.
 
-use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, is_time_name, unit_size_s};
+use hitch_campaign::survey::{
+    LogColumn, TIMES, check_source, fits, is_time_name, unit_size_s, words,
+};
 
 use super::{Mapping, Taken, Untold};
 
@@ -27,6 +29,13 @@ fn assumed_unit(column: &LogColumn) -> Result<(Option<&'static str>, String), Un
     const EPOCH: f64 = 1e8;
     /// Days since 1900 (Excel) and since the year 0 (MATLAB), of the dates from 1980 to 2100.
     const DATES: [std::ops::Range<f64>; 2] = [29_000.0..74_000.0, 723_000.0..768_000.0];
+    let words = words(&column.name);
+    let last = words.last().filter(|_| words.len() > 1);
+    let of_name = |(unit, _): &&(&str, f64)| last.is_some_and(|last| last == unit);
+    if let Some(&(unit, size)) = UNITS.iter().find(of_name) {
+        check_unit(column, unit, size)?;
+        return Ok((Some(unit), format!("its name ends in the unit {unit}")));
+    }
     let known: Vec<f64> = column
         .values
         .iter()
