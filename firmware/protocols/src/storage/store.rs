@@ -467,7 +467,7 @@ fn chunk_of(words: impl Iterator<Item = u32>, checksum: u32, chunk: usize) -> [u
     let mut bytes = [u8::MAX; CHUNK];
     let (targets, _) = bytes.as_chunks_mut::<4>();
     let first = chunk.saturating_mul(CHUNK_WORDS);
-    for (index, word) in (0..COPY_BYTES / 4).zip(words.chain([checksum])) {
+    for (index, word) in (0..usize::MAX).zip(words.chain([checksum])) {
         let place = index.checked_sub(first);
         if let Some(target) = place.and_then(|place| targets.get_mut(place)) {
             *target = word.to_le_bytes();
