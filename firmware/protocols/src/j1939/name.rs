@@ -50,17 +50,18 @@ impl NameFields {
 impl From<NameFields> for Name {
     fn from(fields: NameFields) -> Self {
         let part = |value: u64, bits: u32, at: u32| (value & ((1 << bits) - 1)) << at;
-        Self(
-            part(fields.identity.into(), 21, 0)
-                | part(fields.manufacturer.into(), 11, 21)
-                | part(fields.ecu_instance.into(), 3, 32)
-                | part(fields.function_instance.into(), 5, 35)
-                | part(fields.function.into(), 8, 40)
-                | part(fields.device_class.into(), 7, 49)
-                | part(fields.device_class_instance.into(), 4, 56)
-                | part(fields.industry_group.into(), 3, 60)
-                | part(fields.self_configurable.into(), 1, 63),
-        )
+        let parts = [
+            part(fields.identity.into(), 21, 0),
+            part(fields.manufacturer.into(), 11, 21),
+            part(fields.ecu_instance.into(), 3, 32),
+            part(fields.function_instance.into(), 5, 35),
+            part(fields.function.into(), 8, 40),
+            part(fields.device_class.into(), 7, 49),
+            part(fields.device_class_instance.into(), 4, 56),
+            part(fields.industry_group.into(), 3, 60),
+            part(fields.self_configurable.into(), 1, 63),
+        ];
+        Self(parts.into_iter().fold(0, core::ops::BitOr::bitor))
     }
 }
 
