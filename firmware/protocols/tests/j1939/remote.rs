@@ -246,6 +246,18 @@ fn limits_are_reported_and_the_command_stays() {
     }
 }
 
+/// A hitch that a fault holds says so to every node, not only to the one that commands it.
+#[test]
+fn a_fault_is_reported_whether_or_not_a_node_is_in_control() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    bus.run(100);
+    assert_eq!(last_status(&bus).limit, LimitStatus::OperatorLimited);
+    bus.status.limit = Limit::NonRecoverable;
+    bus.run(100);
+    assert_eq!(bus.node.remote(), Remote::Idle);
+    assert_eq!(last_status(&bus).limit, LimitStatus::NonRecoverable);
+}
+
 #[test]
 fn only_the_node_that_took_control_is_heard() {
     let mut bus = remote_bus();
