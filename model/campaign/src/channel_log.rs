@@ -101,10 +101,13 @@ pub fn read(
 pub fn survey(file: &dyn ChannelFile) -> Vec<LogColumn> {
     let mut columns: Vec<LogColumn> = Vec::new();
     for (index, channel) in file.channels().iter().enumerate() {
-        let (series, fault) = match (channel.fault, file.series(index, None, None)) {
-            (Some(fault), _) => (Series::default(), Some(fault.to_owned())),
-            (None, Ok(series)) => (series, None),
-            (None, Err(fault)) => (Series::default(), Some(fault.what)),
+        let series = match channel.fault {
+            Some(fault) => Err(fault.to_owned()),
+            None => file.series(index, None, None).map_err(|fault| fault.what),
+        };
+        let (series, fault) = match series {
+            Ok(series) => (series, None),
+            Err(fault) => (Series::default(), Some(fault)),
         };
         if fault.is_some() || !series.values.is_empty() {
             let unit = channel.unit.as_deref();

@@ -154,7 +154,7 @@ impl ChannelFile for MdfFile {
     }
 }
 
-/// A channel, the position of its group and its own in it, and the names by which it is told from others.
+/// A channel, its position (data group, channel group, channel), and the names of its group.
 struct Placed {
     channel: LogChannel,
     place: [usize; 3],

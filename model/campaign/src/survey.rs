@@ -13,7 +13,7 @@ use crate::table::{COLUMNS, TIME, column};
 use crate::{CampaignError, bus_log, channel_log, columns, csv_log, mdf_log};
 
 pub use crate::bus_log::Signals;
-pub use crate::time_base::{is_in, is_time_name, unit_size_s, words};
+pub use crate::time_base::{is_in, is_time_name, is_unit_of_time, unit_size_s, words};
 
 /// A column of a table, or a channel.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -36,7 +36,7 @@ pub struct LogColumn {
     pub fault: Option<String>,
 }
 
-/// What separates the name of a channel from that of its group, if others have the same name.
+/// Separator between the name of a channel and the name of its group, which is added to equal names.
 pub const OF_GROUP: &str = " @ ";
 
 /// The name of a channel without that of its group; `None` if it has no group.

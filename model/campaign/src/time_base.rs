@@ -145,6 +145,12 @@ pub fn scale(own: Option<&str>, main: Option<Scale>) -> Option<Scale> {
     own.map_or(main, |unit| Scale::of(unit, &TIME_COLUMN).ok())
 }
 
+/// Whether a unit is one of times.
+#[must_use]
+pub fn is_unit_of_time(unit: &str) -> bool {
+    Scale::of(unit, &TIME_COLUMN).is_ok()
+}
+
 /// Size of a unit of time, s; 1 for one that is not known.
 #[must_use]
 pub fn unit_size_s(unit: &str) -> f64 {

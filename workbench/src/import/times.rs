@@ -1,7 +1,7 @@
 //! The times of a log: their column, and their unit if the log states none.
 
 use hitch_campaign::survey::{
-    LogColumn, TIMES, check_source, fits, is_time_name, unit_size_s, words,
+    LogColumn, TIMES, check_source, is_time_name, is_unit_of_time, unit_size_s, words,
 };
 
 use super::{Mapping, Taken, Untold};
@@ -307,10 +307,7 @@ impl Mapping {
 }
 
 fn unit_of_time(column: &LogColumn) -> Option<&str> {
-    column
-        .unit
-        .as_deref()
-        .filter(|unit| *unit != "V" && fits(unit, TIMES))
+    column.unit.as_deref().filter(|unit| is_unit_of_time(unit))
 }
 
 #[cfg(test)]

@@ -84,7 +84,7 @@ impl HeaderCell {
         self.text == name || self.name == name || self.plain_name() == name
     }
 
-    /// Its name without the number that tells it from others.
+    /// Its name without the number that was added because other cells have the same name.
     fn plain_name(&self) -> &str {
         let number = self
             .name

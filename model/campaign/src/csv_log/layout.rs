@@ -6,9 +6,9 @@ use hitch_input::source_file::SourceFile;
 use crate::CampaignError;
 use crate::csv_log::clock::{Times, is_clock};
 use crate::csv_log::dialect::{Decimals, Header, is_sample, rows};
-use crate::scale::{Scale, spelling};
-use crate::table::{TIMES, cell_error};
-use crate::time_base::{Seen, bases, is_time_name, notes, rises};
+use crate::scale::spelling;
+use crate::table::cell_error;
+use crate::time_base::{Seen, bases, is_time_name, is_unit_of_time, notes, rises};
 
 /// Number of rows that are examined.
 const EXAMINED_ROWS: usize = 1_000;
@@ -143,7 +143,7 @@ impl<'s> Layout<'s> {
             .collect();
         Seen {
             name: cell.name.clone(),
-            is_in_time: unit.is_some_and(|unit| unit != "V" && Scale::of(unit, &TIMES).is_ok()),
+            is_in_time: unit.is_some_and(is_unit_of_time),
             has_unit: unit.is_some(),
             is_clock: filled.first().is_some_and(|text| is_clock(text)),
             samples: values.len(),

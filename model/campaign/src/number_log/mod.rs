@@ -18,9 +18,9 @@ use crate::columns::Source;
 use crate::csv_log::clock::Times;
 use crate::scale::spelling;
 use crate::series::Series;
-use crate::survey::{LogColumn, Survey, fits};
+use crate::survey::{LogColumn, Survey};
 use crate::table::TIME;
-use crate::time_base::{self, Seen};
+use crate::time_base::{self, Seen, is_unit_of_time};
 
 /// Most numbers of a file: as text they would fill the longest file that is read.
 const MOST_NUMBERS: usize = 64 << 20;
@@ -42,6 +42,10 @@ pub struct NumberLog {
     source: SourceFile,
     channels: Vec<LogChannel>,
     columns: Vec<NumberColumn>,
+    /// The column of times of each column.
+    bases: Vec<Option<usize>>,
+    /// What is assumed about the times, one line each.
+    notes: Vec<String>,
 }
 
 /// A fault of a file: what is wrong, and how to mend it.
@@ -72,9 +76,13 @@ impl NumberLog {
             samples: column.values.len(),
             fault: None,
         };
+        let seen: Vec<Seen> = columns.iter().map(seen).collect();
+        let bases = time_base::bases(&seen);
         Ok(Some(Self {
             channels: columns.iter().map(channel).collect(),
             source,
+            notes: time_base::notes(&seen, &bases),
+            bases,
             columns,
         }))
     }
@@ -85,12 +93,11 @@ impl NumberLog {
         let timed: Vec<LogColumn> = self.columns.iter().filter(is_timed).map(listed).collect();
         match timed.is_empty() {
             true => {
-                let (seen, bases) = self.bases();
                 let mut columns: Vec<LogColumn> = self.columns.iter().map(listed).collect();
-                for (column, base) in columns.iter_mut().zip(&bases) {
+                for (column, base) in columns.iter_mut().zip(&self.bases) {
                     column.times = base.map(|base| self.columns[base].name.clone());
                 }
-                let notes = time_base::notes(&seen, &bases);
+                let notes = self.notes.clone();
                 Survey::Table { columns, notes }
             }
             false => {
@@ -101,24 +108,6 @@ impl NumberLog {
                 }
             }
         }
-    }
-
-    /// The columns as far as times matter, and the column of times of each.
-    fn bases(&self) -> (Vec<Seen>, Vec<Option<usize>>) {
-        let seen = |column: &NumberColumn| {
-            let unit = column.unit.as_deref().map(spelling);
-            Seen {
-                name: column.name.clone(),
-                is_in_time: unit.is_some_and(|unit| unit != "V" && fits(unit, TIME)),
-                has_unit: unit.is_some(),
-                is_clock: false,
-                samples: column.values.len(),
-                rises: time_base::rises(&column.values),
-            }
-        };
-        let seen: Vec<Seen> = self.columns.iter().map(seen).collect();
-        let bases = time_base::bases(&seen);
-        (seen, bases)
     }
 
     /// The times of a column, as logged, with their unit.
@@ -142,7 +131,7 @@ impl NumberLog {
             .iter()
             .position(|column| column.name == time.name);
         let main = named.ok_or_else(|| channel_log::missing(self, time))?;
-        let base = time_base::base_of(&self.bases().1, index, main, lift);
+        let base = time_base::base_of(&self.bases, index, main, lift);
         let found = &self.columns[base];
         if found.values.len() != column.values.len() {
             let what = format!(
@@ -162,6 +151,19 @@ impl NumberLog {
             false => time_base::scale(unit(base), main_scale),
         };
         Ok((&found.values, Times::new(scale)))
+    }
+}
+
+/// A column as far as its times matter.
+fn seen(column: &NumberColumn) -> Seen {
+    let unit = column.unit.as_deref().map(spelling);
+    Seen {
+        name: column.name.clone(),
+        is_in_time: unit.is_some_and(is_unit_of_time),
+        has_unit: unit.is_some(),
+        is_clock: false,
+        samples: column.values.len(),
+        rises: time_base::rises(&column.values),
     }
 }
 
