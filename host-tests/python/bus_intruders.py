@@ -107,7 +107,7 @@ def hitch_without_address(node):
     assert claims and claims[-1] == NO_ADDRESS, claims
     heard = list(node.messages(0.7, lambda: node.command(here)))
     heard += node.messages(3.0, lambda: node.command(80.0))
-    # Its angle is not on the bus any more. The plant tells that the hitch stays.
+    # Its angle is no longer on the bus. The test checks the plant: the hitch stays.
     assert {source for _, source, _ in heard} <= {NO_ADDRESS}, heard
 
 
@@ -198,7 +198,7 @@ def shorted_wire_of_two_contacts(node):
 
 
 def shorted_wire_of_one_contact(node):
-    """The bound is that of one press. The plant tells whether it is kept."""
+    """The bound is that of one press. The test checks it on the plant."""
     shared.wait_for(lambda: CLOSED in node.watch(1.0)[2], "code of a closed contact", 30.0)
     codes = node.stays(2.0)
     assert codes == {CLOSED, SAFETY_VALUES_DIFFER}, codes

@@ -117,7 +117,7 @@ fn a_position_without_a_unit_is_refused() {
         &proposed(&columns, &[("rocker_angle_deg", source)]),
         "rocker_angle_deg"
     ));
-    // Percentages rest on an end; with a unit they are only said.
+    // Without a unit, values that rest on an end are refused; with a unit there is only a note.
     columns[3].name = "Rocker Angle".to_owned();
     columns[3].values = ramp(0.5, 400)
         .iter()

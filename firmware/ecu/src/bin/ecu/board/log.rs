@@ -1,7 +1,7 @@
 //! The log: frames of `defmt` in a ring that a debug probe reads (SEGGER RTT).
 //!
-//! A frame for which the ring has no room is dropped as a whole, whatever the probe asks for: logging never waits for the
-//! probe, so a cable that is pulled out does not stop the ECU. The crate `defmt-rtt` is not used, for it can panic.
+//! If the ring has no room for a frame, the whole frame is dropped. Logging never waits for the probe, in any mode that the
+//! probe selects, so the ECU does not stop when the cable is removed. The crate `defmt-rtt` is not used, for it can panic.
 
 use core::cell::UnsafeCell;
 use core::ptr;
