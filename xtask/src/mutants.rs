@@ -86,6 +86,7 @@ const PARTS: [Part; 4] = [
             "firmware/control/src/valve/drop_scale.rs",
             "firmware/quantities/src/fixed.rs",
             "firmware/control/src/estimation/motion_observer.rs",
+            "firmware/control/src/motion/bands.rs",
             "firmware/control/src/motion/position.rs",
             "firmware/quantities/src/units.rs",
             "firmware/control/src/valve/phase.rs",

@@ -71,6 +71,23 @@ fn a_hitch_within_the_restart_band_of_its_set_point_stays() {
 }
 
 #[test]
+fn bands_that_a_tool_narrows_under_a_resting_hitch_wait_for_the_lever() {
+    let narrow = PositionParameters {
+        lever_deadband: MilliDegree(0),
+        restart_band: Micrometre(0),
+        ..PARAMETERS
+    };
+    let (target, rest) = (Micrometre(0), Micrometre(PARAMETERS.restart_band.0));
+    let near = MilliDegree(ASKED + PARAMETERS.lever_deadband.0);
+    let mut position = asked();
+    assert!(!position.follow(near, narrow.upper_limit, false, &narrow));
+    assert_eq!(position.reason_to_move(target, rest, &narrow), None);
+    let moved = MilliDegree(near.0 + 1);
+    assert!(position.follow(moved, narrow.upper_limit, false, &narrow));
+    assert_ne!(position.reason_to_move(target, rest, &narrow), None);
+}
+
+#[test]
 fn a_place_that_was_accepted_is_kept_until_the_lever_moves() {
     let far = (Micrometre(0), Micrometre(50_000));
     let mut position = asked();
