@@ -24,4 +24,5 @@ pub mod second_rig;
 pub mod seeds;
 pub mod simulated_lab;
 pub mod teaching;
-pub mod trace;
+
+pub use paired_replay::trace;

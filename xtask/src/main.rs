@@ -38,6 +38,9 @@ usage: cargo xtask <task> [--arm rustup|debian] [--timings]
           remove one heuristic of xtask/ablations.toml at a time and print what the benchmark loses
   benchmarks [NAME...]
           measure the results in docs/BENCHMARKS.md, or those of these names, again and write them into it
+  replay [--against COMMIT] [--steps N] [--seed SEED]
+          feed controller and safety envelope of an earlier commit and of the present sources the same random and
+          recorded steps, and list every difference; exit code 1 if docs/safety.md does not explain all of them
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
   setup   find or install the ARM toolchain and the emulator
 
@@ -65,6 +68,9 @@ fn run(arguments: &[String]) -> Result<()> {
     }
     if task == "benchmarks" {
         return benchmarks::run(options);
+    }
+    if task == "replay" {
+        return replay(options);
     }
     let options = Options::parse(options)?;
     let mut timings = Timings::new(options.timings);
@@ -123,6 +129,26 @@ impl Options {
         }
         Ok(options)
     }
+}
+
+/// Builds and runs the paired replay of two commits; its exit code is that of this program.
+fn replay(options: &[String]) -> Result<()> {
+    let cargo_options = [
+        "run",
+        "--quiet",
+        "--locked",
+        "--package",
+        "paired-replay",
+        "--",
+    ];
+    let mut command = process::command(workspace::cargo(), &cargo_options);
+    command
+        .arg("--folder")
+        .arg(workspace::target().join("replay"))
+        .args(options);
+    process::announce(&command);
+    let status = command.status().context("can't start cargo")?;
+    std::process::exit(status.code().unwrap_or(2));
 }
 
 /// Builds `firmware-tools`, and runs a task of it.

@@ -20,10 +20,10 @@ const LEVEL: u8 = 10;
 
 /// Where the recorded closed loop is kept.
 pub fn recorded_path() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/closed_loop.trace")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../host-tests/fixtures/closed_loop.trace")
 }
 
-/// The closed loop that [`crate::recording`] once recorded.
+/// The closed loop that `host_tests::recording` once recorded.
 pub fn recorded() -> Result<Trace> {
     let path = recorded_path();
     let packed = std::fs::read(&path).with_context(|| format!("can't read {}", path.display()))?;

@@ -1,0 +1,225 @@
+//! Paired replay: the same steps through controller and envelope of two commits, and every difference of their answers.
+//!
+//! ```text
+//! random signals, crude hitch (steps) --+--> side of the earlier commit --+--> comparison (differences)
+//!                                       +--> side of the present one    --+
+//! ```
+//!
+//! A side is a process that was built from the sources of its commit (`xtask/replay-side`), or the present code in this
+//! process (`side::Present`). A round steps [`MACHINES`] independent machines, so that the hitch of each can follow the
+//! answer of the earlier side at little cost. A machine whose answers differ is powered up again in both sides: the consequences
+//! of a difference are not listed.
+
+pub mod differences;
+pub mod hitch;
+pub mod interface;
+pub mod random;
+pub mod side;
+pub mod sources;
+pub mod trace;
+
+use anyhow::{Result, ensure};
+use replay_side::{ABSENT, Event};
+
+use differences::{Comparison, Differences};
+use interface::{Interface, Layout};
+use random::RandomMachine;
+use side::Side;
+
+/// Machines of a round.
+pub const MACHINES: usize = 64;
+
+/// A step of a machine, apart from the order of the words.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// What happens before it.
+    pub event: Event,
+    /// Parameter of the event, as an index into the common parameters, with its value.
+    pub parameter: (usize, i32),
+    /// Command to the envelope that is stepped beside the controller: lift, lower, mA, and flags.
+    pub command: [i32; 3],
+    /// Values of the known inputs, in their order; [`ABSENT`] for a signal without a value.
+    pub inputs: Vec<i32>,
+}
+
+/// The differences, and what the earlier side did, to judge the steps.
+#[derive(Debug)]
+pub struct Replay {
+    /// The differences.
+    pub differences: Differences,
+    /// What the steps have reached.
+    pub reached: Reached,
+}
+
+/// What the steps have reached in the earlier side.
+#[derive(Clone, Debug, Default)]
+pub struct Reached {
+    /// Steps of a machine.
+    pub steps: u64,
+    /// Steps with a coil current of the controller.
+    pub moving: u64,
+    /// Codes of the trips that were seen in the controller or the envelope, a bit each.
+    pub trips: u64,
+    /// Codes of the states, a bit each.
+    pub states: u64,
+    /// Accepted changes of the calibration.
+    pub calibrations: u64,
+}
+
+/// Replays random steps, at least `steps` in all.
+///
+/// # Errors
+/// If a side ends, or has no interface in common with the other.
+pub fn random(
+    earlier: &mut dyn Side,
+    present: &mut dyn Side,
+    seed: u64,
+    steps: u64,
+) -> Result<Replay> {
+    let layout = Layout::of(earlier.interface(), present.interface())?;
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut machines: Vec<RandomMachine> = (0..MACHINES)
+        .map(|index| RandomMachine::new(index, &layout))
+        .collect();
+    let mut pair = Pair::new(layout, earlier, present);
+    for _ in 0..steps.div_ceil(MACHINES as u64) {
+        let round: Vec<Step> = machines
+            .iter_mut()
+            .map(|machine| machine.step(&mut random))
+            .collect();
+        pair.step(&round, |index, answer, differs| {
+            machines[index].follow(answer, differs);
+        })?;
+    }
+    Ok(pair.replay)
+}
+
+/// Replays the recorded closed loop of the repository.
+///
+/// # Errors
+/// If a side ends, or has no interface in common with the other, or the recording can't be read.
+pub fn recorded(earlier: &mut dyn Side, present: &mut dyn Side) -> Result<Replay> {
+    let layout = Layout::of(earlier.interface(), present.interface())?;
+    let names = layout.inputs.clone();
+    let mut pair = Pair::new(layout, earlier, present);
+    let mut event = Event::PowerUp;
+    for record in trace::recorded()? {
+        let step = Step {
+            event,
+            parameter: (0, 0),
+            command: [0; 3],
+            inputs: names
+                .iter()
+                .map(|name| recorded_value(name, &record))
+                .collect(),
+        };
+        event = Event::None;
+        pair.step(&[step], |_, _, differs| {
+            event = if differs { Event::PowerUp } else { Event::None };
+        })?;
+    }
+    Ok(pair.replay)
+}
+
+/// The value of an input in a record of the controller's link.
+fn recorded_value(name: &str, record: &[u8; hitch_quantities::signals::INPUT_BYTES]) -> i32 {
+    let (words, _) = record.as_chunks::<4>();
+    let first = i32::from_le_bytes(words[0]);
+    let bit = |bit: usize| (first >> bit) & 1;
+    if let Some(index) = interface::RECORDED.iter().position(|known| *known == name) {
+        return match bit(index) {
+            1 => i32::from_le_bytes(words[1 + index]),
+            _ => ABSENT,
+        };
+    }
+    let switch = interface::RECORDED_BITS
+        .iter()
+        .find(|(known, _)| *known == name);
+    switch.map_or(0, |(_, place)| bit(*place))
+}
+
+/// Two sides in lock step.
+struct Pair<'a> {
+    layout: Layout,
+    earlier: &'a mut dyn Side,
+    present: &'a mut dyn Side,
+    replay: Replay,
+}
+
+impl<'a> Pair<'a> {
+    fn new(layout: Layout, earlier: &'a mut dyn Side, present: &'a mut dyn Side) -> Self {
+        Self {
+            layout,
+            earlier,
+            present,
+            replay: Replay {
+                differences: Differences::default(),
+                reached: Reached::default(),
+            },
+        }
+    }
+
+    /// A round. `follow` gets the index of each machine, the answer of the earlier side in the order of the common
+    /// outputs, and whether the sides differ.
+    fn step(&mut self, round: &[Step], mut follow: impl FnMut(usize, &[i32], bool)) -> Result<()> {
+        self.earlier.send(&self.layout.earlier.words(round))?;
+        self.present.send(&self.layout.present.words(round))?;
+        let mut answers = self.earlier.receive(round.len())?;
+        let mut others = self.present.receive(round.len())?;
+        answers = self.layout.earlier.common(&answers);
+        others = self.layout.present.common(&others);
+        let width = self.layout.outputs.len();
+        ensure!(
+            answers.len() == width * round.len() && others.len() == answers.len(),
+            "a side answers too little"
+        );
+        let pairs = answers.chunks_exact(width).zip(others.chunks_exact(width));
+        for (index, (answer, other)) in pairs.enumerate() {
+            let differs = answer != other;
+            if differs {
+                self.replay.differences.add(
+                    &self.layout,
+                    &Comparison {
+                        step: self.replay.reached.steps,
+                        machine: index,
+                        asked: &round[index],
+                        earlier: answer,
+                        present: other,
+                    },
+                );
+            }
+            self.replay.reached.add(&self.layout, answer);
+            follow(index, answer, differs);
+        }
+        Ok(())
+    }
+}
+
+impl Reached {
+    fn add(&mut self, layout: &Layout, answer: &[i32]) {
+        let at = |place: Option<usize>| place.map_or(0, |place| answer[place]);
+        let places = &layout.places;
+        self.steps += 1;
+        self.moving += u64::from(at(places.lift_current) > 0 || at(places.lower_current) > 0);
+        self.trips |= 1 << (at(places.trip) & 63) | 1 << (at(places.envelope_trip) & 63);
+        self.states |= 1 << (at(places.state) & 63);
+        self.calibrations += u64::from(at(places.accepted) != 0);
+    }
+
+    /// The codes of a set of bits, without 0.
+    #[must_use]
+    pub fn codes(bits: u64) -> Vec<u32> {
+        (1..64).filter(|code| bits >> code & 1 == 1).collect()
+    }
+}
+
+/// Checks that both sides can be compared at all.
+///
+/// # Errors
+/// If they have no output in common.
+pub fn layout(earlier: &Interface, present: &Interface) -> Result<Layout> {
+    Layout::of(earlier, present)
+}
+
+#[cfg(test)]
+mod tests;
