@@ -1,8 +1,11 @@
-//! Coverage of the safety envelope: its tests have to reach each region of its code, and therefore each line.
+//! Coverage of the safety envelope: its tests have to reach each region of its code, and therefore each line. Outcomes of
+//! branches that no test has are listed.
 //!
-//! A region is the code between two branches, so a line with a condition has several.
+//! A region is the code between two branches, so a line with a condition has several. A branch is a condition of `if`,
+//! `match`, `&&` and `||`; listed unless it was true and false. Counters of branches are an unstable option of the compiler, which is
+//! enabled for this build alone.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::env;
 use std::ffi::OsString;
 use std::fs;
@@ -12,6 +15,8 @@ use std::process::{Command, ExitCode, Stdio};
 use anyhow::{Context, Result, bail, ensure};
 use arm_build::{process, workspace};
 use llvm_profparser::{CoverageMapping, merge_profiles};
+
+use crate::branches::{self, Place, Taken};
 
 /// The covered files, relative to the workspace's root: the envelope, and the rows of its table.
 const COVERED: [&str; 2] = [
@@ -35,7 +40,29 @@ pub fn run() -> Result<()> {
             .arg("--quiet")
             .env("LLVM_PROFILE_FILE", &counters),
     )?;
-    judge(&regions(&test, &counters)?)
+    let profile = merge_profiles(&[counters]).context("can't read the counters")?;
+    let objects = [test];
+    let mapping = CoverageMapping::new(&objects, &profile, true)?;
+    let branches = branches::branches(&mapping, &profile, &workspace::root(), &COVERED)?;
+    list_branches(&branches);
+    judge(&regions(&mapping)?)
+}
+
+/// Lists the outcomes that no test has. They are no error yet: two are open.
+fn list_branches(branches: &BTreeMap<Place, Taken>) {
+    let open = branches
+        .iter()
+        .filter_map(|((file, [line, column, ..]), taken)| {
+            let what = taken.open()?;
+            Some(format!("{}:{line}:{column} is {what}", file.display()))
+        })
+        .collect::<Vec<_>>();
+    open.iter().for_each(|line| println!("{line}"));
+    println!(
+        "the safety envelope: {} of {} branches are true and false in its tests",
+        branches.len() - open.len(),
+        branches.len()
+    );
 }
 
 /// Compiles a test with counters; returns the program. Counters of build scripts are written to `folder`.
@@ -70,7 +97,8 @@ pub fn compile() -> Option<ExitCode> {
     let compiler: OsString = arguments.next()?;
     let status = Command::new(compiler)
         .args(arguments)
-        .args(["-C", "instrument-coverage"])
+        .args(["-C", "instrument-coverage", "-Z", "coverage-options=branch"])
+        .env("RUSTC_BOOTSTRAP", "1")
         .status();
     Some(match status {
         Ok(status) if status.success() => ExitCode::SUCCESS,
@@ -88,10 +116,7 @@ struct Region {
 }
 
 /// The regions of the covered files.
-fn regions(test: &Path, counters: &Path) -> Result<Vec<Region>> {
-    let profile = merge_profiles(&[counters]).context("can't read the counters")?;
-    let objects = [test.to_owned()];
-    let mapping = CoverageMapping::new(&objects, &profile, true)?;
+fn regions(mapping: &CoverageMapping<'_>) -> Result<Vec<Region>> {
     let report = mapping.generate_report()?;
     let root = workspace::root();
     let mut regions = Vec::new();

@@ -2,6 +2,7 @@
 //! parameters, and the coverage of the safety envelope. `cargo xtask` starts them.
 
 mod a2l;
+mod branches;
 mod budget;
 mod coverage;
 mod image;
