@@ -1,16 +1,14 @@
 //! Watches the angle: one sensor, and what it must do while a coil moves the hitch.
 
 use hitch_quantities::calibration::design_parameters::{SafetyParameters, SensorParameters};
-use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{MilliAmp, MilliDegree, Millisecond};
 use hitch_quantities::{CoilCurrents, Inputs};
 
 use super::following::{AngleReading, FollowingMonitor, Standstill};
 use super::noise_detector::NoiseDetector;
+use super::samples::{SPAN, Samples};
 use crate::Limits;
 
-/// Samples whose mean is compared with the required travel: noise of 0.1 degree is then 0.025 degree.
-const SPAN: usize = 16;
 /// The noise measure averages over this many samples: noise of +-0.8 degree is found in 18 ms, and that of a sensor
 /// with
 /// 0.1 degree, one sigma, is seven of its own sigmas below the limit.
@@ -34,13 +32,10 @@ pub struct AngleFaults {
 }
 
 /// The watch.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct AngleWatch {
-    /// The last good samples, the newest at `newest`.
-    samples: [MilliDegree; SPAN],
-    newest: usize,
-    /// Any of them.
-    filled: bool,
+    /// The last good samples; `None` before the first.
+    samples: Option<Samples>,
     bad_for: Millisecond,
     /// The last sample in range, and the step to it.
     last: MilliDegree,
@@ -64,23 +59,6 @@ struct Stroke {
     furthest: MilliDegree,
     /// Travel required and seen.
     following: FollowingMonitor,
-}
-
-impl Default for AngleWatch {
-    fn default() -> Self {
-        Self {
-            samples: [MilliDegree::ZERO; SPAN],
-            newest: 0,
-            filled: false,
-            bad_for: Millisecond::ZERO,
-            last: MilliDegree::ZERO,
-            step: MilliDegree::ZERO,
-            noise: NoiseDetector::default(),
-            noise_sum: 0,
-            stroke: None,
-            ground_contact: false,
-        }
-    }
 }
 
 impl AngleWatch {
@@ -115,7 +93,10 @@ impl AngleWatch {
         match believed {
             Some(angle) => {
                 self.bad_for = Millisecond::ZERO;
-                self.take(angle);
+                self.samples = Some(
+                    self.samples
+                        .map_or(Samples::of(angle), |samples| samples.and(angle)),
+                );
             }
             None => self.bad_for = self.bad_for.next(),
         }
@@ -147,29 +128,16 @@ impl AngleWatch {
     /// After a gap that has been a fault, any angle will do.
     fn jumps_to(&self, angle: MilliDegree, sensors: &SensorParameters) -> bool {
         self.bad_for <= sensors.bridged
-            && self.filled
-            && (angle - self.newest_sample()).magnitude() > sensors.angle_jump
-    }
-
-    fn newest_sample(&self) -> MilliDegree {
-        let at = self.newest % SPAN;
-        self.samples.get(at).copied().unwrap_or_default()
-    }
-
-    /// Mean of the latest good samples.
-    fn mean(&self, samples: usize) -> MilliDegree {
-        let sum = (0..samples).fold(0_i32, |sum, steps| {
-            let at = self.newest.wrapping_sub(steps) % SPAN;
-            sum.saturating_add(self.samples.get(at).map_or(0, |sample| sample.0))
-        });
-        MilliDegree(Divisor::at_least_one(samples as i32).divide(sum))
+            && self
+                .samples
+                .is_some_and(|samples| (angle - samples.newest()).magnitude() > sensors.angle_jump)
     }
 
     /// What the sensor shows.
-    fn shown(&self) -> AngleReading {
+    fn shown(&self, samples: &Samples) -> AngleReading {
         AngleReading {
-            mean: self.mean(SPAN),
-            latest: self.mean(SPAN / 2),
+            mean: samples.mean(SPAN),
+            latest: samples.mean(SPAN / 2),
             noise: MilliDegree(self.noise_sum / NOISE_SAMPLES),
         }
     }
@@ -181,7 +149,7 @@ impl AngleWatch {
         at_rest: bool,
         safety: &SafetyParameters,
     ) -> bool {
-        if !self.filled {
+        if self.samples.is_none() {
             self.last = angle;
         }
         let step = angle - self.last;
@@ -196,17 +164,8 @@ impl AngleWatch {
         mean > safety.noise_limit.0
     }
 
-    /// Takes in a good sample.
-    fn take(&mut self, angle: MilliDegree) {
-        if !self.filled {
-            self.samples = [angle; SPAN];
-        }
-        self.newest = self.newest.wrapping_add(1) % SPAN;
-        self.samples[self.newest] = angle;
-        self.filled = true;
-    }
-
-    /// Checks the effect of an energised coil on the angle. The required travel remains while no sample is valid.
+    /// Checks the effect of an energised coil on the angle. The required travel remains while no sample is valid. Before the
+    /// first good sample no current is passed, so there is nothing to check.
     fn judge_motion(
         &mut self,
         believed: Option<MilliDegree>,
@@ -217,16 +176,17 @@ impl AngleWatch {
         faults: &mut AngleFaults,
     ) {
         let lifting = passed.lift > MilliAmp::ZERO;
-        if !lifting && passed.lower <= MilliAmp::ZERO || !self.filled {
+        let energised = lifting || passed.lower > MilliAmp::ZERO;
+        let Some(samples) = self.samples.filter(|_| energised) else {
             self.stroke = None;
             return;
-        }
-        let shown = self.shown();
+        };
+        let shown = self.shown(&samples);
         let along = |angle: MilliDegree| match lifting {
             true => angle,
             false => -angle,
         };
-        let newest = along(self.newest_sample());
+        let newest = along(samples.newest());
         let stroke = self.stroke.get_or_insert(Stroke {
             first: newest,
             furthest: newest,

@@ -65,6 +65,7 @@ mod locks;
 mod measuring;
 mod noise_detector;
 pub mod rows;
+mod samples;
 mod supply;
 mod travel_limits;
 
@@ -160,17 +161,19 @@ impl Envelope {
                 .or(self.tripped)
                 .or(found);
         }
-        let lock = match self.tripped {
-            None => lock,
-            Some(_) => Lock::All,
-        };
         let at_rest = self.passed == CoilCurrents::OFF;
-        let armed = self.arming.update(inputs, lock, at_rest, limits);
+        let armed = match self.tripped {
+            None => self.arming.update(inputs, lock, at_rest, limits),
+            Some(_) => {
+                self.disarm();
+                false
+            }
+        };
         // While a sample is bridged a coil that is on stays on, but none is switched on.
         let bridged = holds.has_any(&BRIDGED) && at_rest;
         self.holds_back = false;
         self.passed = match command {
-            Some(command) if armed && self.tripped.is_none() && !bridged => {
+            Some(command) if armed && !bridged => {
                 let command = self.angle.withhold(command);
                 self.bounded(command, slow_start, limits)
             }
