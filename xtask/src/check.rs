@@ -1,7 +1,7 @@
 //! Formatting, the order of folders, types of the scripts, lints and documentation, with warnings denied.
 
 use anyhow::Result;
-use arm_build::images::PARTS;
+use arm_build::images::BOARDS;
 use arm_build::toolchain::Way;
 use arm_build::{process, setup, workspace};
 
@@ -46,7 +46,7 @@ fn lint_images(way: Way) -> Result<()> {
         Way::Rustup => "clippy",
         Way::Debian => "check",
     };
-    for feature in std::iter::once("emulated").chain(PARTS) {
+    for feature in std::iter::once("emulated").chain(BOARDS) {
         let mut command = way.cargo(subcommand)?;
         command
             .args(["--package", "hitch-ecu", "--lib", "--bins"])

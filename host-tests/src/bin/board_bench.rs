@@ -1,4 +1,4 @@
-//! Runs scenarios on the flashed images: `board-bench LIBRARY PART IMAGE [SCENARIO...]`.
+//! Runs scenarios on the flashed images: `board-bench LIBRARY BOARD IMAGE [SCENARIO...]`.
 //!
 //! The library is Unicorn, which is GPL: it is loaded in this separate process, and not linked.
 
@@ -9,15 +9,15 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use clap::Parser;
 use host_tests::board::scenarios::{ALL, Scenario, Setup};
-use host_tests::board::{Image, Part};
+use host_tests::board::{Image, Layout};
 
 /// Runs scenarios on an image as it is flashed.
 #[derive(Debug, Parser)]
 struct Arguments {
     /// Shared library of the CPU emulator Unicorn, `libunicorn.so.2`.
     library: PathBuf,
-    /// The part: stm32f405 or stm32g474.
-    part: Part,
+    /// The board: stm32f405, stm32g474 or nucleo-g474re.
+    board: Layout,
     /// ELF file of the image.
     image: PathBuf,
     /// Names of scenarios; all of them if there is none.
@@ -42,7 +42,7 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<usize> {
     let setup = Setup {
         library: arguments.library.clone(),
-        part: arguments.part,
+        layout: arguments.board,
         image: Image::read(Path::new(&arguments.image))?,
     };
     let mut failed = 0;
@@ -53,14 +53,14 @@ fn run(arguments: &Arguments) -> Result<usize> {
         match result {
             Ok(measured) => println!(
                 "{} {name} passed in {took:.1} s\n{}",
-                setup.part,
+                setup.layout,
                 indented(&measured)
             ),
             Err(error) => {
                 failed += 1;
                 println!(
                     "{} {name} FAILED in {took:.1} s\n{}",
-                    setup.part,
+                    setup.layout,
                     indented(&format!("{error:#}"))
                 );
             }

@@ -3,8 +3,6 @@
 use super::part::{PWR, Part};
 use super::registers::Registers;
 
-/// Internal high-speed oscillator, Hz.
-const HSI_HZ: f64 = 16e6;
 /// Time until the PLL has locked, ns (data sheets: at most 300 us and 40 us).
 const PLL_LOCK_NS: f64 = 200e3;
 
@@ -25,20 +23,23 @@ pub struct Clocks {
     pll_ready_ns: Option<f64>,
     /// Frequency of the crystal, Hz.
     pub crystal_hz: f64,
+    /// Frequency of the internal oscillator, Hz.
+    internal_hz: f64,
     /// The failure was signalled to the image, and the flag is not yet cleared.
     security_flag: bool,
 }
 
 impl Clocks {
-    /// After a reset, with a crystal of this frequency.
+    /// After a reset, with a crystal and an internal oscillator of these frequencies.
     #[must_use]
-    pub const fn new(part: Part, crystal_hz: f64) -> Self {
+    pub const fn new(part: Part, crystal_hz: f64, internal_hz: f64) -> Self {
         Self {
             part,
             rcc: part.addresses().rcc,
             crystal_ready_ns: None,
             pll_ready_ns: None,
             crystal_hz,
+            internal_hz,
             security_flag: false,
         }
     }
@@ -135,7 +136,7 @@ impl Clocks {
         match (self.part, switch) {
             (Part::Stm32f405, 1) | (Part::Stm32g474, 2) => self.crystal_hz,
             (Part::Stm32f405, 2) | (Part::Stm32g474, 3) => self.pll_hz(registers),
-            _ => HSI_HZ,
+            _ => self.internal_hz,
         }
     }
 
@@ -170,7 +171,7 @@ impl Clocks {
         };
         let source_hz = match self.pll_uses_crystal(registers) {
             true => self.crystal_hz,
-            false => HSI_HZ,
+            false => self.internal_hz,
         };
         [source_hz / divider, source_hz / divider * factor]
     }

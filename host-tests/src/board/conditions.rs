@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::part::{Part, Pin};
+use super::layout::Layout;
+use super::part::Pin;
 
 /// Conditions that a scenario sets and may change at any time.
 #[derive(Clone, Debug)]
@@ -11,6 +12,8 @@ pub struct Conditions {
     pub crystal_start_ns: Option<f64>,
     /// Frequency of the crystal, Hz.
     pub crystal_hz: f64,
+    /// Frequency of the internal oscillator, Hz.
+    pub internal_hz: f64,
     /// Frequency of the low-speed oscillator, Hz.
     pub slow_clock_hz: f64,
     /// Voltage of the converters' reference, V.
@@ -30,13 +33,14 @@ pub struct Conditions {
 impl Conditions {
     /// Everything as in the data sheet.
     #[must_use]
-    pub fn typical(part: Part) -> Self {
+    pub fn typical(layout: Layout) -> Self {
         Self {
             crystal_start_ns: Some(2e6),
-            crystal_hz: 8e6,
+            crystal_hz: layout.crystal_hz(),
+            internal_hz: 16e6,
             slow_clock_hz: 32e3,
             reference_v: 3.3,
-            internal_reference_v: part.internal_reference_v(),
+            internal_reference_v: layout.part().internal_reference_v(),
             volts: HashMap::new(),
             levels: HashMap::new(),
             stuck_ram: None,

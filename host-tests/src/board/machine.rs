@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use hitch_ecu::link::Reply;
-use hitch_ecu::{Contacts, Panel, Samples};
+use hitch_ecu::{BoardScaling, Contacts, Panel, Signal};
 use hitch_protocols::can::Frame;
 use hitch_workbench::ecu::{EcuMachine, MachineError};
 
@@ -15,7 +15,8 @@ use super::conditions::Conditions;
 use super::cpu::{Cpu, Register};
 use super::flash::Contents;
 use super::image::Image;
-use super::part::{FLASH, Part, Pin, Port, RAM, RAM_BYTES};
+use super::layout::Layout;
+use super::part::{FLASH, Pin, Port, RAM, RAM_BYTES};
 
 /// A millisecond, ns.
 const MILLISECOND_NS: f64 = 1e6;
@@ -29,30 +30,9 @@ const HARD_FAULT: u32 = 3;
 /// In a stacked program status: the stack pointer was moved by a word for its alignment.
 const STACK_ALIGNED: u32 = 1 << 9;
 
-/// The board's inputs from converters, in the order of [`Samples::codes`].
-fn sample_pins(part: Part) -> [Option<Pin>; Samples::CHANNELS] {
-    let a = |number| Some(Pin::new(Port::A, number));
-    let b = |number| Some(Pin::new(Port::B, number));
-    let c = |number| Some(Pin::new(Port::C, number));
-    let (pump, sensor_supply) = match part {
-        Part::Stm32f405 => (c(3), a(4)),
-        Part::Stm32g474 => (b(1), b(13)),
-    };
-    [
-        a(0),
-        a(1),
-        a(3),
-        c(1),
-        a(2),
-        c(0),
-        b(0),
-        c(2),
-        pump,
-        a(5),
-        sensor_supply,
-        None,
-    ]
-}
+/// Places of supply and sensor supply in [`Samples::codes`].
+const SUPPLY: usize = Signal::Supply as usize;
+const SENSOR_SUPPLY: usize = Signal::SensorSupply as usize;
 
 /// Steps of the timer in half a pulse on both boards: 168 MHz, counted up and down at 16 kHz.
 const PWM_STEPS: u16 = 5_250;
@@ -74,6 +54,7 @@ pub struct Snapshot {
 /// The board.
 pub struct Board {
     cpu: Cpu<Chip>,
+    layout: Layout,
     image: Image,
     pc: u32,
     /// The processor is halted by a debugger, or locked up.
@@ -91,12 +72,13 @@ impl Board {
     /// If the processor can't be emulated.
     pub fn new(
         library: &Path,
-        part: Part,
+        layout: Layout,
         image: &Image,
         contents: Contents,
         mut conditions: Conditions,
     ) -> Result<Self> {
         conditions.wires.push((ENABLE, ENABLE_READ_BACK));
+        let part = layout.part();
         let chip = Chip::new(part, contents, conditions, 0.0, POWER_FLAGS);
         let mut cpu = Cpu::new(library, chip)?;
         let (data, _) = part.data();
@@ -121,6 +103,7 @@ impl Board {
         }
         let mut board = Self {
             cpu,
+            layout,
             image: image.clone(),
             pc: 0,
             halted: false,
@@ -399,10 +382,19 @@ impl Board {
 
     fn connect(&mut self, contacts: &Contacts) {
         let chip = self.cpu.bus();
-        let pins = sample_pins(chip.part);
-        for (pin, code) in pins.into_iter().zip(contacts.samples.codes()) {
-            // The codes are those of a reference of 3.3 V.
-            let volts = f64::from(code.get()) / 4096.0 * 3.3;
+        let nominal = BoardScaling::NOMINAL;
+        let [supply, sensor_supply] = self.layout.supply_scales();
+        let pins = self.layout.sample_pins();
+        for ((pin, code), place) in pins.into_iter().zip(contacts.samples.codes()).zip(0..) {
+            // The codes are those of the nominal board, with a reference of 3.3 V.
+            let full_scale_v = match place {
+                SUPPLY => 3.3 * f64::from(nominal.supply.0) / f64::from(supply.0),
+                SENSOR_SUPPLY => {
+                    3.3 * f64::from(nominal.sensor_supply.0) / f64::from(sensor_supply.0)
+                }
+                _ => 3.3,
+            };
+            let volts = f64::from(code.get()) / 4096.0 * full_scale_v;
             match pin {
                 Some(pin) => {
                     chip.conditions.volts.insert(pin, volts);

@@ -1,11 +1,8 @@
-//! The two parts: memories, peripherals and pins.
+//! The two parts: memories, peripherals, oscillators and pins.
 
 use std::fmt;
-use std::str::FromStr;
 
-use anyhow::{Error, bail};
-
-/// A part that there is an image for.
+/// A part that there is a board for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// STM32F405RG (RM0090).
@@ -55,18 +52,6 @@ pub const RAM: u32 = 0x2000_0000;
 pub const RAM_BYTES: u32 = 128 * 1024;
 
 impl Part {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Stm32f405, Self::Stm32g474];
-
-    /// Name as in the images' names.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Stm32f405 => "stm32f405",
-            Self::Stm32g474 => "stm32g474",
-        }
-    }
-
     /// Where the image keeps its data in flash, the log of faults and then the calibration: first address and bytes.
     #[must_use]
     pub const fn data(self) -> (u32, u32) {
@@ -106,6 +91,17 @@ impl Part {
         match self {
             Self::Stm32f405 => [17e3, 47e3],
             Self::Stm32g474 => [29.5e3, 34e3],
+        }
+    }
+
+    /// Frequencies that the internal oscillator may have, Hz, over temperature and supply (data sheets).
+    #[must_use]
+    pub const fn internal_hz(self) -> [f64; 2] {
+        match self {
+            // -8 to 4.5 %.
+            Self::Stm32f405 => [14.72e6, 16.72e6],
+            // 15.88 to 16.08 MHz, then -2.1 to 1.55 %.
+            Self::Stm32g474 => [15.546e6, 16.329e6],
         }
     }
 
@@ -175,23 +171,6 @@ impl Part {
             (self, converter, channel),
             (Self::Stm32f405, 0, 17) | (Self::Stm32g474, 0 | 2, 18)
         )
-    }
-}
-
-impl fmt::Display for Part {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Part {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self, Error> {
-        match Self::ALL.into_iter().find(|part| part.name() == name) {
-            Some(part) => Ok(part),
-            None => bail!("there is no part `{name}`; take `stm32f405` or `stm32g474`"),
-        }
     }
 }
 

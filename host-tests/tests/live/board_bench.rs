@@ -91,6 +91,8 @@ scenarios! {
     bus_off: "bus-off",
     flooded_bus: "flooded-bus",
     remote_control: "remote-control",
+    button_travel: "button-travel",
+    button_contacts: "button-contacts",
     random_operation: "random-operation",
 }
 

@@ -8,23 +8,23 @@ use anyhow::{Context, Result};
 use crate::process;
 use crate::toolchain::{TARGET, Way};
 
-/// Supported parts, by the features that select them.
-pub const PARTS: [&str; 2] = ["stm32f405", "stm32g474"];
+/// Boards, by the features that select them: the ECU's with either part, and one to try the image out.
+pub const BOARDS: [&str; 3] = ["stm32f405", "stm32g474", "nucleo-g474re"];
 
 /// Cargo profile of the images: optimised, with overflow checks.
 const PROFILE: &str = "firmware";
 
-/// Builds everything for ARM: the library for the ECU, the image for the emulator and those for the parts.
+/// Builds everything for ARM: the library for the ECU, the image for the emulator and those for the boards.
 ///
 /// # Errors
 /// If cargo can't build it.
 pub fn build_all(way: Way) -> Result<()> {
     build(way, &["--lib"])?;
     build_emulated(way)?;
-    for part in PARTS {
-        build(way, &["--bin", "ecu", "--features", part])?;
-        // All parts have the same build path; each image is copied under its own name.
-        let path = of_part(way, part);
+    for board in BOARDS {
+        build(way, &["--bin", "ecu", "--features", board])?;
+        // All boards have the same build path; each image is copied under its own name.
+        let path = of_board(way, board);
         fs::copy(folder(way).join("ecu"), &path)
             .with_context(|| format!("can't write {}", path.display()))?;
     }
@@ -46,10 +46,10 @@ pub fn emulated(way: Way) -> PathBuf {
     folder(way).join("emulated")
 }
 
-/// Path of the image for a part.
+/// Path of the image for a board.
 #[must_use]
-pub fn of_part(way: Way, part: &str) -> PathBuf {
-    folder(way).join(format!("ecu-{part}"))
+pub fn of_board(way: Way, board: &str) -> PathBuf {
+    folder(way).join(format!("ecu-{board}"))
 }
 
 /// Folder of the images.

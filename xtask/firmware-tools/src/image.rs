@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
-use arm_build::images::{PARTS, build_all, emulated, of_part};
+use arm_build::images::{BOARDS, build_all, emulated, of_board};
 use arm_build::toolchain::Way;
 use image_stack::Bound;
 
@@ -66,19 +66,19 @@ impl Image {
     }
 }
 
-/// Builds an image for each part, as ELF, as plain bytes and as Intel HEX, and the one for the emulator.
+/// Builds an image for each board, as ELF, as plain bytes and as Intel HEX, and the one for the emulator.
 fn finished(way: Way) -> Result<Vec<Image>> {
     build_all(way)?;
-    let of_parts = PARTS.iter().map(|part| {
-        let path = of_part(way, part);
+    let of_boards = BOARDS.iter().map(|board| {
+        let path = of_board(way, board);
         seal::write(&path)?;
         programming::write(&path)?;
         forbid_panics(&path)?;
-        Image::measured(format!("ecu-{part}"), &path)
+        Image::measured(format!("ecu-{board}"), &path)
     });
     let emulated =
         std::iter::once_with(|| Image::measured(budget::EMULATED.to_owned(), &emulated(way)));
-    of_parts.chain(emulated).collect()
+    of_boards.chain(emulated).collect()
 }
 
 /// A flashed image has no code that panics: whatever leads there would be a fault of the program.

@@ -112,7 +112,7 @@ impl Chip {
             registers,
             now_ns,
             until_ns: now_ns,
-            clocks: Clocks::new(part, conditions.crystal_hz),
+            clocks: Clocks::new(part, conditions.crystal_hz, conditions.internal_hz),
             flash: Flash::new(part, contents),
             pwm: Pwm::new(part),
             converters: [0, 1, 2].map(|number| Converter::new(part, number)),

@@ -12,6 +12,9 @@ use crate::board::{Conditions, Contents};
 /// Time within which all active codes are broadcast at least once after an address is claimed, ms.
 pub const REPORTED_MS: usize = 1_500;
 
+/// Nominal frequency of the internal oscillator, Hz.
+const INTERNAL_HZ: f64 = 16e6;
+
 /// The operator picks the hitch up and lifts it; no coil follows, and `trouble` is reported on the bus.
 fn is_refused(rig: &mut Rig<'_>, trouble: Trouble) -> Result<()> {
     rig.run(READY_MS)?;
@@ -51,32 +54,53 @@ pub fn reports(said: &[Frame], trouble: Trouble) -> bool {
     alone || packets.windows(3).any(|bytes| bytes == wanted)
 }
 
-fn with_crystal<'m>(setup: &Setup, model: &'m Model, crystal_hz: f64) -> Result<Rig<'m>> {
+/// A board whose crystal has `share` of its nominal frequency, with this internal oscillator.
+fn with_oscillators<'m>(
+    setup: &Setup,
+    model: &'m Model,
+    share: f64,
+    internal_hz: f64,
+) -> Result<Rig<'m>> {
+    let typical = Conditions::typical(setup.layout);
     let conditions = Conditions {
-        crystal_hz,
-        ..Conditions::typical(setup.part)
+        crystal_hz: share * typical.crystal_hz,
+        internal_hz,
+        ..typical
     };
-    Rig::new(setup, model, Contents::erased(setup.part), conditions)
+    Rig::new(
+        setup,
+        model,
+        Contents::erased(setup.layout.part()),
+        conditions,
+    )
 }
 
-/// Crystals of other frequencies on an image for 8 MHz: the part runs from its internal oscillator, no coil is driven,
-/// and a trouble code says why. A crystal inside the tolerance is used.
+/// A sound crystal is used with the slowest and the fastest internal oscillator of the data sheet. Further off than these
+/// can explain, or another crystal altogether: the part runs from its internal oscillator, no coil is driven, and a trouble
+/// code says why.
 pub fn wrong_crystal(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
-    let wrong_hz = [7.72e6, 8.28e6, 12e6, 24e6];
-    for crystal_hz in wrong_hz {
-        let mut rig = with_crystal(setup, &model, crystal_hz)?;
-        is_refused(&mut rig, Trouble::Crystal).with_context(|| format!("{crystal_hz} Hz"))?;
-    }
-    for crystal_hz in [7.8e6, 8.2e6] {
-        let mut rig = with_crystal(setup, &model, crystal_hz)?;
+    let [slowest_hz, fastest_hz] = setup.layout.part().internal_hz();
+    for internal_hz in [slowest_hz, fastest_hz] {
+        let mut rig = with_oscillators(setup, &model, 1.0, internal_hz)?;
         rig.pick_up()?;
         rig.lever(125.0, 700)?;
-        ensure!(rig.is_driven(), "{crystal_hz} Hz: the hitch isn't lifted");
+        ensure!(
+            rig.is_driven(),
+            "the hitch isn't lifted with an internal oscillator of {internal_hz} Hz"
+        );
+    }
+    let (low, high) = (INTERNAL_HZ / fastest_hz, INTERNAL_HZ / slowest_hz);
+    let wrong = [low - 0.01, high + 0.01, 0.5, 1.5];
+    for share in wrong {
+        let mut rig = with_oscillators(setup, &model, share, INTERNAL_HZ)?;
+        is_refused(&mut rig, Trouble::Crystal)
+            .with_context(|| format!("{share} of the crystal's frequency"))?;
     }
     Ok(format!(
-        "{} crystals refused and reported, with the bus at its rate",
-        wrong_hz.len()
+        "used with internal oscillators of {slowest_hz} and {fastest_hz} Hz; {} crystals refused and reported, with the bus at \
+         its rate",
+        wrong.len()
     ))
 }
 

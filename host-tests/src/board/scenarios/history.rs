@@ -118,7 +118,7 @@ pub fn fault_history(setup: &Setup) -> Result<String> {
     ensure!(cleared == Previous::Nothing, "{cleared:?} after DM3");
     for (number, operation) in operations.iter().enumerate() {
         let mut half = contents.clone();
-        half.apply(setup.part, operation, Extent::Half);
+        half.apply(setup.layout.part(), operation, Extent::Half);
         for (when, state) in [("before", &contents), ("in", &half)] {
             let found = after_power_up(&mut rig, Some(state))
                 .with_context(|| format!("power cut {when} operation {number}"))?;
@@ -127,7 +127,7 @@ pub fn fault_history(setup: &Setup) -> Result<String> {
                 "{found:?} after a power cut {when} operation {number}"
             );
         }
-        contents.apply(setup.part, operation, Extent::Whole);
+        contents.apply(setup.layout.part(), operation, Extent::Whole);
     }
     let found = after_power_up(&mut rig, Some(&contents))?;
     ensure!(found == Previous::LeverMissing(1), "{found:?} with all");
@@ -147,7 +147,7 @@ const PAGE_BYTES: usize = 8 * MOST_SLOTS;
 fn log_in(setup: &Setup, contents: &Contents) -> FaultLog<CutFlash> {
     let mut bytes = vec![0xFF; FLASH_BYTES];
     for page in [0, 1] {
-        let from = page * setup.part.erase_bytes() as usize;
+        let from = page * setup.layout.part().erase_bytes() as usize;
         let to = CALIBRATION_BYTES + page * PAGE_BYTES;
         bytes[to..to + PAGE_BYTES].copy_from_slice(&contents.bytes[from..from + PAGE_BYTES]);
     }
@@ -166,7 +166,7 @@ fn nearly_full(setup: &Setup, troubles: &[Trouble]) -> Result<Contents> {
             break;
         }
     }
-    let mut contents = Contents::erased(setup.part);
+    let mut contents = Contents::erased(setup.layout.part());
     let page = &flash.bytes()[CALIBRATION_BYTES..CALIBRATION_BYTES + PAGE_BYTES];
     contents.bytes[..PAGE_BYTES].copy_from_slice(page);
     Ok(contents)
@@ -202,12 +202,17 @@ fn compacts(setup: &Setup, rig: &mut Rig<'_>, contents: &Contents, all: &[Troubl
 /// before and within each operation.
 pub fn compaction(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
-    let [_, fastest_hz] = setup.part.slow_clock_hz();
+    let [_, fastest_hz] = setup.layout.part().slow_clock_hz();
     let conditions = Conditions {
         slow_clock_hz: fastest_hz,
-        ..Conditions::typical(setup.part)
+        ..Conditions::typical(setup.layout)
     };
-    let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
+    let mut rig = Rig::new(
+        setup,
+        &model,
+        Contents::erased(setup.layout.part()),
+        conditions,
+    )?;
     compacts(
         setup,
         &mut rig,
@@ -224,10 +229,10 @@ pub fn compaction(setup: &Setup) -> Result<String> {
     let operations = rig.board.chip().flash.operations.clone();
     for (number, operation) in operations.iter().enumerate() {
         let mut half = contents.clone();
-        half.apply(setup.part, operation, Extent::Half);
+        half.apply(setup.layout.part(), operation, Extent::Half);
         compacts(setup, &mut rig, &half, &few)
             .with_context(|| format!("power cut in operation {number}: {operation:?}"))?;
-        contents.apply(setup.part, operation, Extent::Whole);
+        contents.apply(setup.layout.part(), operation, Extent::Whole);
     }
     rig.finish()?;
     Ok(format!(

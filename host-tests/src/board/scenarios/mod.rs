@@ -1,6 +1,7 @@
 //! Scenarios for the images, one function each. Each returns a line with the measured figures.
 
 mod bus;
+mod buttons;
 mod faults;
 mod first_flash;
 mod history;
@@ -19,15 +20,15 @@ use anyhow::Result;
 pub use rig::Rig;
 
 use super::image::Image;
-use super::part::Part;
+use super::layout::Layout;
 
-/// The image of a part, and the emulator's library.
+/// The image of a board, and the emulator's library.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// Shared library of the CPU emulator.
     pub library: PathBuf,
-    /// The part.
-    pub part: Part,
+    /// The board.
+    pub layout: Layout,
     /// Its image.
     pub image: Image,
 }
@@ -36,7 +37,7 @@ pub struct Setup {
 pub type Scenario = fn(&Setup) -> Result<String>;
 
 /// All of them, by name.
-pub const ALL: [(&str, Scenario); 27] = [
+pub const ALL: [(&str, Scenario); 29] = [
     ("boot", start::boot),
     ("factory-fresh", start::factory_fresh),
     ("slow-crystal", start::slow_crystal),
@@ -63,5 +64,7 @@ pub const ALL: [(&str, Scenario); 27] = [
     ("bus-off", bus::bus_off),
     ("flooded-bus", bus::flooded),
     ("remote-control", remote::consent),
+    ("button-travel", buttons::longest_travel),
+    ("button-contacts", buttons::contacts),
     ("random-operation", random::operation),
 ];

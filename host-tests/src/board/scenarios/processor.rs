@@ -5,19 +5,24 @@ use hitch_plant::Model;
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};
-use crate::board::{Conditions, Contents, Part, Stop};
+use crate::board::{Board, Conditions, Contents, Part, Stop};
 
 /// Time within which the watchdog resets a dead program at the slowest oscillator, and the pins are low, ms.
 const WATCHDOG_MS: f64 = 20.0;
 
 /// A hitch that is lifted at full speed, in typical conditions.
 fn lifted<'m>(setup: &Setup, model: &'m Model) -> Result<Rig<'m>> {
-    lifted_in(setup, model, Conditions::typical(setup.part))
+    lifted_in(setup, model, Conditions::typical(setup.layout))
 }
 
 /// A hitch that is lifted at full speed.
 fn lifted_in<'m>(setup: &Setup, model: &'m Model, conditions: Conditions) -> Result<Rig<'m>> {
-    let mut rig = Rig::new(setup, model, Contents::erased(setup.part), conditions)?;
+    let mut rig = Rig::new(
+        setup,
+        model,
+        Contents::erased(setup.layout.part()),
+        conditions,
+    )?;
     rig.pick_up()?;
     rig.lever(125.0, 700)?;
     ensure!(rig.is_driven(), "the hitch isn't lifted");
@@ -33,12 +38,12 @@ fn stays_off(rig: &mut Rig<'_>, milliseconds: usize) -> Result<()> {
     Ok(())
 }
 
-/// The crystal fails: hardware cuts the outputs, the program gives up, and the watchdog resets the part.
-pub fn crystal_failure(setup: &Setup) -> Result<String> {
+/// A failure of a hitch that is lifted, at which hardware cuts the outputs; afterwards the watchdog resets the part.
+fn cut_by_hardware(setup: &Setup, fail: impl FnOnce(&mut Board)) -> Result<String> {
     let model = hitch_model_file::nominal();
     let mut rig = lifted(setup, &model)?;
     let fault_ns = rig.now_ns();
-    rig.board.chip().fail_crystal();
+    fail(&mut rig.board);
     let took_ms = rig.off_after_ms(fault_ns, 60, |_| {})?;
     ensure!(took_ms < 0.01, "off after {took_ms} ms: not by hardware");
     stays_off(&mut rig, READY_MS + 400)?;
@@ -53,35 +58,24 @@ pub fn crystal_failure(setup: &Setup) -> Result<String> {
     ))
 }
 
-/// A debugger halts the processor in the middle of a move: hardware cuts the outputs, and the watchdog, which runs on,
-/// resets the part.
+/// The crystal fails.
+pub fn crystal_failure(setup: &Setup) -> Result<String> {
+    cut_by_hardware(setup, |board| board.chip().fail_crystal())
+}
+
+/// A debugger halts the processor in the middle of a move; the watchdog runs on.
 pub fn debugger_halt(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = lifted(setup, &model)?;
-    let fault_ns = rig.now_ns();
-    rig.board.halt(true);
-    let took_ms = rig.off_after_ms(fault_ns, 10, |_| {})?;
-    ensure!(took_ms < 0.01, "off after {took_ms} ms");
-    stays_off(&mut rig, READY_MS + 400)?;
-    ensure!(
-        rig.board.resets == [Stop::Watchdog],
-        "{:?}",
-        rig.board.resets
-    );
-    rig.finish_after_resets()?;
-    Ok(format!(
-        "pins low after {took_ms:.3} ms, reset, and ready again"
-    ))
+    cut_by_hardware(setup, |board| board.halt(true))
 }
 
 /// The converters stop, so the program waits for ever: the watchdog resets the part.
 pub fn stuck_program(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
     let mut worst_ms: f64 = 0.0;
-    for slow_clock_hz in setup.part.slow_clock_hz() {
+    for slow_clock_hz in setup.layout.part().slow_clock_hz() {
         let conditions = Conditions {
             slow_clock_hz,
-            ..Conditions::typical(setup.part)
+            ..Conditions::typical(setup.layout)
         };
         let mut rig = lifted_in(setup, &model, conditions)?;
         let fault_ns = rig.now_ns();
@@ -127,8 +121,8 @@ pub fn stack_overflow(setup: &Setup) -> Result<String> {
 /// Bits of the peripherals' set-up flip while the hitch is lifted: the program notices and restarts.
 pub fn flipped_registers(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
-    let places = setup.part.addresses();
-    let sequence = match setup.part {
+    let places = setup.layout.part().addresses();
+    let sequence = match setup.layout.part() {
         Part::Stm32f405 => 0x38,
         Part::Stm32g474 => 0x4C,
     };
@@ -219,9 +213,14 @@ pub fn damaged_ram(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
     let conditions = Conditions {
         stuck_ram: Some(0x2001_1004),
-        ..Conditions::typical(setup.part)
+        ..Conditions::typical(setup.layout)
     };
-    let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
+    let mut rig = Rig::new(
+        setup,
+        &model,
+        Contents::erased(setup.layout.part()),
+        conditions,
+    )?;
     for step in 0..READY_MS + 400 {
         rig.tick_with(|_| {})?;
         ensure!(!rig.is_driven(), "a coil is driven after {step} ms");

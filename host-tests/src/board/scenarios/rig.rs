@@ -36,7 +36,7 @@ impl<'m> Rig<'m> {
     ) -> Result<Self> {
         let board = Board::new(
             &setup.library,
-            setup.part,
+            setup.layout,
             &setup.image,
             contents,
             conditions,
@@ -54,8 +54,8 @@ impl<'m> Rig<'m> {
         Self::new(
             setup,
             model,
-            Contents::erased(setup.part),
-            Conditions::typical(setup.part),
+            Contents::erased(setup.layout.part()),
+            Conditions::typical(setup.layout),
         )
     }
 

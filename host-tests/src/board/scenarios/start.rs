@@ -9,7 +9,12 @@ use crate::board::{Conditions, Contents, Operation, Stop};
 /// Frames of the address claim and the status show that the application runs.
 fn starts(setup: &Setup, conditions: Conditions) -> Result<f64> {
     let model = hitch_model_file::nominal();
-    let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
+    let mut rig = Rig::new(
+        setup,
+        &model,
+        Contents::erased(setup.layout.part()),
+        conditions,
+    )?;
     let mut ready_ms = None;
     for millisecond in 0..READY_MS + 300 {
         rig.tick_with(|_| {})?;
@@ -30,7 +35,7 @@ fn starts(setup: &Setup, conditions: Conditions) -> Result<f64> {
 
 /// A part as it is delivered by the programmer, in typical conditions.
 pub fn boot(setup: &Setup) -> Result<String> {
-    let ready_ms = starts(setup, Conditions::typical(setup.part))?;
+    let ready_ms = starts(setup, Conditions::typical(setup.layout))?;
     Ok(format!(
         "the first millisecond begins {ready_ms} ms after power-up"
     ))
@@ -49,7 +54,7 @@ pub fn factory_fresh(setup: &Setup) -> Result<String> {
         "the application changes option bytes"
     );
     // That there is no calibration is a fault, which the log keeps.
-    let log_bytes = setup.part.log_bytes();
+    let log_bytes = setup.layout.part().log_bytes();
     let is_entry = |operation: &Operation| matches!(operation, Operation::Program { offset, .. } if *offset < log_bytes);
     ensure!(
         chip.flash.operations.iter().all(is_entry),
@@ -66,7 +71,7 @@ pub fn slow_crystal(setup: &Setup) -> Result<String> {
         Conditions {
             crystal_start_ns: Some(100e6),
             slow_clock_hz: 47e3,
-            ..Conditions::typical(setup.part)
+            ..Conditions::typical(setup.layout)
         },
     )?;
     Ok(format!(
@@ -79,9 +84,14 @@ pub fn dead_crystal(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
     let conditions = Conditions {
         crystal_start_ns: None,
-        ..Conditions::typical(setup.part)
+        ..Conditions::typical(setup.layout)
     };
-    let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
+    let mut rig = Rig::new(
+        setup,
+        &model,
+        Contents::erased(setup.layout.part()),
+        conditions,
+    )?;
     for _ in 0..1_500 {
         rig.tick_with(|_| {})?;
         ensure!(!rig.is_driven(), "a coil is driven without a crystal");
@@ -102,13 +112,13 @@ pub fn dead_crystal(setup: &Setup) -> Result<String> {
 
 /// The slowest and the fastest oscillator of the watchdog.
 pub fn slow_clock_tolerance(setup: &Setup) -> Result<String> {
-    let [slowest, fastest] = setup.part.slow_clock_hz();
+    let [slowest, fastest] = setup.layout.part().slow_clock_hz();
     for slow_clock_hz in [slowest, 32e3, fastest] {
         starts(
             setup,
             Conditions {
                 slow_clock_hz,
-                ..Conditions::typical(setup.part)
+                ..Conditions::typical(setup.layout)
             },
         )?;
     }

@@ -78,13 +78,13 @@ pub fn power_cuts(setup: &Setup) -> Result<String> {
     let mut news = 0;
     for (number, operation) in operations.iter().enumerate() {
         let mut half = contents.clone();
-        half.apply(setup.part, operation, Extent::Half);
+        half.apply(setup.layout.part(), operation, Extent::Half);
         for (when, state) in [("before", &contents), ("in", &half)] {
             let new = loads_new(&mut rig.board, &start, state)
                 .with_context(|| format!("power cut {when} operation {number}"))?;
             news += usize::from(new);
         }
-        contents.apply(setup.part, operation, Extent::Whole);
+        contents.apply(setup.layout.part(), operation, Extent::Whole);
     }
     ensure!(
         loads_new(&mut rig.board, &start, &contents)?,

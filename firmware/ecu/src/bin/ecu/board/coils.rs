@@ -18,7 +18,7 @@ use hitch_ecu::CoilDriver;
 use stm32_metapac::timer::vals::{Bkp, Cms, Mms, Ocm, Ossi};
 use stm32_metapac::{DBGMCU, GPIOA, GPIOB, TIM1};
 
-use super::part::scaling::SCALING;
+use super::part::SCALING;
 use super::pins::{self, Pin};
 
 /// Turning points of the counter in a millisecond: two per pulse, 16 pulses.

@@ -2,8 +2,8 @@
 
 use hitch_ecu::{AdcCode, BoardScaling};
 
+use super::part::SCALING;
 use super::part::factory_reference::{FACTORY_REFERENCE, FACTORY_REFERENCE_MV};
-use super::part::scaling::SCALING;
 
 /// Voltage of the converters' reference on the board, mV.
 const REFERENCE_MV: u32 = 3_300;

@@ -29,7 +29,9 @@ mod part;
 mod part;
 
 #[cfg(all(feature = "stm32f405", feature = "stm32g474"))]
-compile_error!("an image is for one part: choose the feature `stm32f405` or `stm32g474`");
+compile_error!(
+    "an image is for one part: choose the feature `stm32f405`, `stm32g474` or `nucleo-g474re`"
+);
 
 use hitch_ecu::FlashRegions;
 

@@ -5,10 +5,11 @@ pub mod converters;
 pub mod factory_reference;
 pub mod flash;
 pub mod register_check;
-pub mod scaling;
+mod scaling;
 pub mod slow_clock;
 
 pub use can::Can;
+pub use scaling::SCALING;
 
 use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Pllm, Plln, Pllp, Pllq, Pllsrc, Ppre, Sw};
@@ -22,6 +23,9 @@ pub const TIMER_FUNCTION: u8 = 1;
 pub const CRYSTAL_HZ: u32 = 8_000_000;
 /// The internal oscillator.
 pub const INTERNAL_HZ: u32 = 16_000_000;
+/// Its lowest and highest rate, per mille of the nominal one: 1 % at 25 deg C, -4 to 4 % over -10 to 85, -8 to
+/// 4.5 % over -40 to 105 deg C (DS8626, HSI oscillator characteristics).
+pub const INTERNAL_RANGE_PER_MILLE: [u32; 2] = [920, 1_045];
 /// Clock of TIM2 and TIM5: twice that of APB1.
 pub const TIMER_HZ: u32 = 84_000_000;
 

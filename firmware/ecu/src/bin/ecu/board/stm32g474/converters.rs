@@ -5,50 +5,23 @@ use hitch_ecu::Signal;
 use stm32_metapac::adc::Adc;
 use stm32_metapac::adc::vals::{Adcaldif, Exten, SampleTime};
 use stm32_metapac::adccommon::vals::Ckmode;
-use stm32_metapac::{ADC12_COMMON, ADC345_COMMON, GPIOA, GPIOB, GPIOC};
+use stm32_metapac::{ADC12_COMMON, ADC345_COMMON};
 
+use super::board_data::ANALOG_PINS;
+pub use super::board_data::SEQUENCES;
 use super::delay::CycleDelay;
 use crate::board::pins;
 
 /// TIM1_TRGO for ADC1 and 2 and for ADC3 (RM0440, tables of `JEXTSEL`).
 const TIM1_TRGO: u8 = 0;
-/// The channels of the three sequences in the order of their ranks, with their signals.
-pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
-    [
-        (3, Signal::LiftCurrent),      // PA2
-        (1, Signal::RockerAngle),      // PA0
-        (4, Signal::UpperLimit),       // PA3
-        (8, Signal::CylinderPressure), // PC2
-    ],
-    [
-        (6, Signal::LowerCurrent), // PC0
-        (2, Signal::Lever),        // PA1
-        (7, Signal::LoweringDial), // PC1
-        (13, Signal::SecondAngle), // PA5
-    ],
-    [
-        (1, Signal::PumpPressure), // PB1
-        (12, Signal::Supply),      // PB0
-        (5, Signal::SensorSupply), // PB13
-        (REFERENCE, Signal::Reference),
-    ],
-];
-
 /// VREFINT, on ADC1 and ADC3.
-const REFERENCE: u8 = 18;
+pub const REFERENCE: u8 = 18;
 
 /// Sets the pins to analogue mode, and the clock of the converters.
 pub fn start_pins_and_clocks() {
-    for pin in 0..=3 {
-        pins::analog(GPIOA, pin);
+    for (port, pin) in ANALOG_PINS {
+        pins::analog(port, pin);
     }
-    for pin in 0..=2 {
-        pins::analog(GPIOC, pin);
-    }
-    for pin in [0, 1, 13] {
-        pins::analog(GPIOB, pin);
-    }
-    pins::analog(GPIOA, 5);
     // 168 MHz / 4 = 42 MHz, of 60 MHz allowed.
     for common in [ADC12_COMMON, ADC345_COMMON] {
         common.ccr().modify(|w| {

@@ -1,4 +1,4 @@
-//! STM32G474RE: clocks and peripherals.
+//! STM32G474RE: clocks and peripherals. What differs between boards with this part is data of the board.
 
 mod can;
 pub mod converters;
@@ -6,9 +6,17 @@ mod delay;
 pub mod factory_reference;
 pub mod flash;
 pub mod register_check;
-pub mod scaling;
 pub mod slow_clock;
 
+#[cfg(not(feature = "nucleo-g474re"))]
+#[path = "ecu_board.rs"]
+mod board_data;
+#[cfg(feature = "nucleo-g474re")]
+#[path = "nucleo_g474re.rs"]
+mod board_data;
+
+use board_data::CRYSTAL_DIVIDER;
+pub use board_data::{CRYSTAL_HZ, SCALING};
 pub use can::Can;
 
 use stm32_metapac::flash::vals::Latency;
@@ -19,10 +27,11 @@ use crate::board::oscillators::Source;
 
 /// TIM1 on PA8 and PA9 (data sheet, table 13).
 pub const TIMER_FUNCTION: u8 = 6;
-/// The crystal that the image is made for.
-pub const CRYSTAL_HZ: u32 = 8_000_000;
 /// The internal oscillator.
 pub const INTERNAL_HZ: u32 = 16_000_000;
+/// Its lowest and highest rate, per mille of the nominal one: 15.88 to 16.08 MHz at 30 deg C, from there
+/// -2.0 to 1.5 % over -40 to 125 deg C, and -0.1 to 0.05 % over the supply (DS12288, HSI16 oscillator characteristics).
+pub const INTERNAL_RANGE_PER_MILLE: [u32; 2] = [972, 1_021];
 /// Clock of TIM2 and TIM16: that of the core.
 pub const TIMER_HZ: u32 = 168_000_000;
 
@@ -53,9 +62,13 @@ pub fn start_clocks(source: Source) {
     // Boost, for clocks above 150 MHz (RM0440, 6.1.5): `R1MODE` is bit 8, where stm32-metapac 21 has bit 0.
     PWR.cr5().modify(|w| w.0 &= !(1 << 8));
     RCC.pllcfgr().write(|w| {
-        // 8 MHz / 2 or 16 MHz / 4, * 84 / 2
+        // 4 MHz of either source, * 84 / 2
         w.set_pllsrc(if is_crystal { Pllsrc::HSE } else { Pllsrc::HSI });
-        w.set_pllm(if is_crystal { Pllm::DIV2 } else { Pllm::DIV4 });
+        w.set_pllm(if is_crystal {
+            CRYSTAL_DIVIDER
+        } else {
+            Pllm::DIV4
+        });
         w.set_plln(Plln::MUL84);
         w.set_pllr(Pllr::DIV2);
         w.set_pllren(true);

@@ -1,0 +1,62 @@
+//! The ECU's board with an STM32G474RE: crystal, converter inputs and scaling.
+
+use hitch_ecu::{AdcCode, BoardScaling, Signal};
+use hitch_quantities::calibration::class::Fitted;
+use stm32_metapac::gpio::Gpio;
+use stm32_metapac::rcc::vals::Pllm;
+use stm32_metapac::{GPIOA, GPIOB, GPIOC};
+
+use super::converters::REFERENCE;
+
+/// The crystal that the image is made for.
+pub const CRYSTAL_HZ: u32 = 8_000_000;
+/// The PLL gets 4 MHz.
+pub const CRYSTAL_DIVIDER: Pllm = Pllm::DIV2;
+
+/// The converters' inputs.
+pub const ANALOG_PINS: [(Gpio, usize); 11] = [
+    (GPIOA, 0),
+    (GPIOA, 1),
+    (GPIOA, 2),
+    (GPIOA, 3),
+    (GPIOA, 5),
+    (GPIOB, 0),
+    (GPIOB, 1),
+    (GPIOB, 13),
+    (GPIOC, 0),
+    (GPIOC, 1),
+    (GPIOC, 2),
+];
+
+/// The channels of the three sequences in the order of their ranks, with their signals.
+pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
+    [
+        (3, Signal::LiftCurrent),      // PA2
+        (1, Signal::RockerAngle),      // PA0
+        (4, Signal::UpperLimit),       // PA3
+        (8, Signal::CylinderPressure), // PC2
+    ],
+    [
+        (6, Signal::LowerCurrent), // PC0
+        (2, Signal::Lever),        // PA1
+        (7, Signal::LoweringDial), // PC1
+        (13, Signal::SecondAngle), // PA5
+    ],
+    [
+        (1, Signal::PumpPressure), // PB1
+        (12, Signal::Supply),      // PB0
+        (5, Signal::SensorSupply), // PB13
+        (REFERENCE, Signal::Reference),
+    ],
+];
+
+/// The nominal board's, with a second track of the rocker-angle sensor on PA5.
+pub const SCALING: BoardScaling = BoardScaling {
+    // A band gap of 1.212 V, 1.182 to 1.232 V (DS12288, VREFINT).
+    reference: AdcCode::new(1_504),
+    fitted: Fitted {
+        second_track: true,
+        second_contact: true,
+    },
+    ..BoardScaling::NOMINAL
+};
