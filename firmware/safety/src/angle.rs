@@ -93,10 +93,10 @@ impl AngleWatch {
         match believed {
             Some(angle) => {
                 self.bad_for = Millisecond::ZERO;
-                self.samples = Some(
-                    self.samples
-                        .map_or(Samples::of(angle), |samples| samples.and(angle)),
-                );
+                match &mut self.samples {
+                    Some(samples) => samples.take(angle),
+                    None => self.samples = Some(Samples::of(angle)),
+                }
             }
             None => self.bad_for = self.bad_for.next(),
         }
@@ -130,6 +130,7 @@ impl AngleWatch {
         self.bad_for <= sensors.bridged
             && self
                 .samples
+                .as_ref()
                 .is_some_and(|samples| (angle - samples.newest()).magnitude() > sensors.angle_jump)
     }
 
@@ -177,11 +178,11 @@ impl AngleWatch {
     ) {
         let lifting = passed.lift > MilliAmp::ZERO;
         let energised = lifting || passed.lower > MilliAmp::ZERO;
-        let Some(samples) = self.samples.filter(|_| energised) else {
+        let Some(samples) = self.samples.as_ref().filter(|_| energised) else {
             self.stroke = None;
             return;
         };
-        let shown = self.shown(&samples);
+        let shown = self.shown(samples);
         let along = |angle: MilliDegree| match lifting {
             true => angle,
             false => -angle,

@@ -23,11 +23,10 @@ impl Samples {
         }
     }
 
-    /// These and a new one, in place of the oldest.
-    pub fn and(mut self, angle: MilliDegree) -> Self {
+    /// Takes in a new one, in place of the oldest.
+    pub fn take(&mut self, angle: MilliDegree) {
         self.newest = self.newest.wrapping_add(1) % SPAN;
         self.values[self.newest] = angle;
-        self
     }
 
     /// The newest.

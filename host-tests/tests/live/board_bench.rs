@@ -1,4 +1,4 @@
-//! The flashed images on models of both parts with the plant attached: each scenario of
+//! The flashed images on models of the boards with the plant attached: each scenario of
 //! [`host_tests::board::scenarios`], in a separate process.
 //!
 //! They need images for ARM: `cargo xtask test` builds them and runs these tests. `HITCH_BOARD_MINUTES` makes the random
@@ -27,11 +27,11 @@ fn library() -> &'static Path {
 }
 
 /// Runs a scenario; returns its output.
-fn scenario(part: &str, name: &str) -> String {
+fn scenario(board: &str, name: &str) -> String {
     let folder = std::env::var_os(IMAGES_VARIABLE).expect("the folder with the images");
-    let image = PathBuf::from(folder).join(format!("ecu-{part}"));
+    let image = PathBuf::from(folder).join(format!("ecu-{board}"));
     let mut command = Command::new(env!("CARGO_BIN_EXE_board-bench"));
-    command.arg(library()).arg(part).arg(image).arg(name);
+    command.arg(library()).arg(board).arg(image).arg(name);
     match run(&mut command) {
         Ok(said) => {
             println!("{said}");
@@ -41,27 +41,33 @@ fn scenario(part: &str, name: &str) -> String {
     }
 }
 
-/// A test a scenario and part.
+/// A test a scenario of a board.
+macro_rules! on_board {
+    ($module:ident, $board:literal, $($function:ident: $name:literal,)*) => {
+        mod $module {
+            $(#[test]
+            #[ignore = "needs the ARM images: run by `cargo xtask test`"]
+            fn $function() {
+                super::scenario($board, $name);
+            })*
+        }
+    };
+}
+
+/// All scenarios, on both boards of the ECU.
 macro_rules! scenarios {
     ($($function:ident: $name:literal,)*) => {
         const NAMES: &[&str] = &[$($name),*];
 
-        mod stm32f405 {
-            $(#[test]
-            #[ignore = "needs the ARM images: run by `cargo xtask test`"]
-            fn $function() {
-                super::scenario("stm32f405", $name);
-            })*
-        }
-
-        mod stm32g474 {
-            $(#[test]
-            #[ignore = "needs the ARM images: run by `cargo xtask test`"]
-            fn $function() {
-                super::scenario("stm32g474", $name);
-            })*
-        }
+        on_board!(stm32f405, "stm32f405", $($function: $name,)*);
+        on_board!(stm32g474, "stm32g474", $($function: $name,)*);
     };
+}
+
+// It starts with the board's crystal. Motion on this board is not tested yet.
+on_board! {
+    nucleo_g474re, "nucleo-g474re",
+    boot: "boot",
 }
 
 scenarios! {
@@ -93,6 +99,7 @@ scenarios! {
     remote_control: "remote-control",
     button_travel: "button-travel",
     button_contacts: "button-contacts",
+    desk: "desk",
     random_operation: "random-operation",
 }
 

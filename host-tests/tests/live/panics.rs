@@ -9,8 +9,8 @@ fn panics(image: &str) -> Vec<String> {
 
 #[test]
 #[ignore = "needs the ARM images: run by `cargo xtask test`"]
-fn the_images_for_the_parts_cannot_panic() {
-    for image in ["ecu-stm32f405", "ecu-stm32g474"] {
+fn the_images_for_the_boards_cannot_panic() {
+    for image in ["ecu-stm32f405", "ecu-stm32g474", "ecu-nucleo-g474re"] {
         assert_eq!(panics(image), Vec::<String>::new(), "{image}");
     }
 }

@@ -54,6 +54,12 @@ pub fn reports(said: &[Frame], trouble: Trouble) -> bool {
     alone || packets.windows(3).any(|bytes| bytes == wanted)
 }
 
+/// All codes that are in a DM1.
+pub fn reported(said: &[Frame]) -> Vec<Trouble> {
+    let all = Trouble::ALL.iter().copied();
+    all.filter(|trouble| reports(said, *trouble)).collect()
+}
+
 /// A board whose crystal has `share` of its nominal frequency, with this internal oscillator.
 fn with_oscillators<'m>(
     setup: &Setup,
@@ -87,7 +93,8 @@ pub fn wrong_crystal(setup: &Setup) -> Result<String> {
         rig.lever(125.0, 700)?;
         ensure!(
             rig.is_driven(),
-            "the hitch isn't lifted with an internal oscillator of {internal_hz} Hz"
+            "the hitch isn't lifted with an internal oscillator of {internal_hz} Hz; reported: {:?}",
+            reported(&rig.said)
         );
     }
     let (low, high) = (INTERNAL_HZ / fastest_hz, INTERNAL_HZ / slowest_hz);

@@ -2,6 +2,7 @@
 
 mod bus;
 mod buttons;
+mod desk;
 mod faults;
 mod first_flash;
 mod history;
@@ -37,7 +38,7 @@ pub struct Setup {
 pub type Scenario = fn(&Setup) -> Result<String>;
 
 /// All of them, by name.
-pub const ALL: [(&str, Scenario); 29] = [
+pub const ALL: [(&str, Scenario); 30] = [
     ("boot", start::boot),
     ("factory-fresh", start::factory_fresh),
     ("slow-crystal", start::slow_crystal),
@@ -66,5 +67,6 @@ pub const ALL: [(&str, Scenario); 29] = [
     ("remote-control", remote::consent),
     ("button-travel", buttons::longest_travel),
     ("button-contacts", buttons::contacts),
+    ("desk", desk::bring_up),
     ("random-operation", random::operation),
 ];
