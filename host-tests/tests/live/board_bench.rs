@@ -64,10 +64,13 @@ macro_rules! scenarios {
     };
 }
 
-// It starts with the board's crystal. Motion on this board is not tested yet.
+// What differs from the ECU's board with the same part: crystal, pins and dividers.
 on_board! {
     nucleo_g474re, "nucleo-g474re",
     boot: "boot",
+    wrong_crystal: "wrong-crystal",
+    lift_hold_lower: "lift-hold-lower",
+    desk: "desk",
 }
 
 scenarios! {
