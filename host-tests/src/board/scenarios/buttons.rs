@@ -50,12 +50,15 @@ pub fn longest_travel(setup: &Setup) -> Result<String> {
     ))
 }
 
+/// A fault of the contacts: its description, its time after the start, ms, the contacts, and the code that tells it.
+type ContactFault<'a> = (&'a str, usize, &'a [(Contact, bool)], Trouble);
+
 /// Contacts that say nothing of a press: no coil is driven, and a trouble code says why.
 pub fn contacts(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
     let closed_at_power_up: &[(Contact, bool)] =
         &[(Contact::Up, true), (Contact::UpReleased, false)];
-    let cases: [(&str, usize, &[(Contact, bool)], Trouble); 4] = [
+    let cases: [ContactFault<'_>; 4] = [
         (
             "pressed since power-up",
             0,
