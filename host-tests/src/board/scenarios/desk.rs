@@ -2,11 +2,12 @@
 
 use anyhow::{Result, ensure};
 use hitch_ecu::{AdcCode, BoardScaling, Contact, Contacts};
+use hitch_plant::Model;
 use hitch_protocols::j1939::Trouble;
 use hitch_workbench::ecu::Order;
 
 use super::Setup;
-use super::first_flash::{REPORTED_MS, reported};
+use super::first_flash::{reported, reports};
 use super::rig::{READY_MS, Rig};
 
 /// Supply and sensor supply that 3.3 V are on NUCLEO-G474RE, mV.
@@ -45,24 +46,43 @@ impl Wires {
     }
 }
 
-/// Milliseconds in which lift and lowering LED are lit.
-fn run(rig: &mut Rig<'_>, wires: &mut Wires, milliseconds: usize) -> Result<[usize; 2]> {
-    let mut lit = [0; 2];
+/// Longest flash before an open coil is a fault, ms: the time of row 12, and a sample at each end.
+const OPEN_COIL_MS: usize = 42;
+/// Time in which the potentiometer is turned, the fault occurs, and the next DM1 is sent, ms.
+const TURNED_MS: usize = 1_500;
+
+/// How long lift and lowering LED were lit, ms, one entry a flash.
+type Flashes = [Vec<usize>; 2];
+
+/// Dark milliseconds that end a flash.
+const DARK_MS: usize = 10;
+
+/// The flashes within some milliseconds.
+fn run(rig: &mut Rig<'_>, wires: &mut Wires, milliseconds: usize) -> Result<Flashes> {
+    let mut flashes = Flashes::default();
+    let mut dark_ms = [DARK_MS; 2];
     for _ in 0..milliseconds {
         let chip = rig.board.chip();
         let duties = [chip.duty(0), chip.duty(1)];
-        for (lit, duty) in lit.iter_mut().zip(duties) {
-            *lit += usize::from(duty > 0.0);
+        for ((flashes, dark_ms), duty) in flashes.iter_mut().zip(&mut dark_ms).zip(duties) {
+            match flashes.last_mut() {
+                _ if duty <= 0.0 => *dark_ms += 1,
+                Some(lit_ms) if *dark_ms < DARK_MS => (*lit_ms, *dark_ms) = (*lit_ms + 1, 0),
+                _ => {
+                    flashes.push(1);
+                    *dark_ms = 0;
+                }
+            }
         }
         rig.tick_with(|contacts| wires.connect(duties, contacts))?;
     }
-    Ok(lit)
+    Ok(flashes)
 }
 
-/// Turns the potentiometer to the middle and up, and then to the middle and down; what is to be seen.
-fn turn(setup: &Setup, filtered: bool) -> Result<([usize; 2], Vec<Trouble>)> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+/// A desk that is powered up: the potentiometer is turned up and down in the transport lock, and nothing is lit. Then field
+/// mode is closed.
+fn powered_up<'m>(setup: &Setup, model: &'m Model, filtered: bool) -> Result<(Rig<'m>, Wires)> {
+    let mut rig = Rig::typical(setup, model)?;
     let mut wires = Wires {
         currents: [0.0; 2],
         filtered,
@@ -70,33 +90,78 @@ fn turn(setup: &Setup, filtered: bool) -> Result<([usize; 2], Vec<Trouble>)> {
     let field = |closed| Order::Contact(Contact::FieldMode, closed);
     rig.bench.operator.apply(field(false));
     rig.bench.operator.apply(Order::Lever(80.0));
-    let mut lit = run(&mut rig, &mut wires, READY_MS + 1_000)?;
+    run(&mut rig, &mut wires, READY_MS)?;
     for lever_deg in [100.0, 80.0] {
         rig.bench.operator.apply(Order::Lever(lever_deg));
-        lit = run(&mut rig, &mut wires, 1_000)?;
+        run(&mut rig, &mut wires, 400)?;
     }
-    ensure!(lit == [0, 0], "an LED is lit in the transport lock");
+    ensure!(!rig.was_driven, "an LED is lit in the transport lock");
     rig.bench.operator.apply(field(true));
-    run(&mut rig, &mut wires, 500)?;
-    let mut longest = [0; 2];
-    for lever_deg in [92.0, 115.0, 88.0, 65.0] {
-        rig.bench.operator.apply(Order::Lever(lever_deg));
-        let lit = run(&mut rig, &mut wires, 2_000)?;
-        longest = [longest[0].max(lit[0]), longest[1].max(lit[1])];
-    }
-    run(&mut rig, &mut wires, REPORTED_MS)?;
-    rig.finish()?;
-    Ok((longest, reported(&rig.said)))
+    run(&mut rig, &mut wires, 100)?;
+    ensure!(!rig.was_driven, "an LED is lit before the lever is moved");
+    Ok((rig, wires))
 }
 
-/// The LEDs without and with the filters that stand in for the coils' currents.
-pub fn bring_up(setup: &Setup) -> Result<String> {
-    let mut lines = Vec::new();
-    for (what, filtered) in [("no current", false), ("filters", true)] {
-        let ([lift_ms, lower_ms], troubles) = turn(setup, filtered)?;
-        lines.push(format!(
-            "{what}: lift LED {lift_ms} ms, lowering LED {lower_ms} ms; reported {troubles:?}"
-        ));
+/// Turns the potentiometer, and lets go of it.
+fn turn(
+    rig: &mut Rig<'_>,
+    wires: &mut Wires,
+    lever_deg: f64,
+    milliseconds: usize,
+) -> Result<Flashes> {
+    rig.bench.operator.apply(Order::Lever(lever_deg));
+    run(rig, wires, milliseconds)
+}
+
+/// No current flows: an LED is lit until row 12 trips, and its code is reported. Returns the longest flash, ms.
+fn without_current(setup: &Setup, model: &Model) -> Result<usize> {
+    let (mut rig, mut wires) = powered_up(setup, model, false)?;
+    let mut longest_ms = 0;
+    for lever_deg in [115.0, 65.0] {
+        let flashes = turn(&mut rig, &mut wires, lever_deg, TURNED_MS)?;
+        longest_ms = flashes.into_iter().flatten().fold(longest_ms, usize::max);
     }
-    Ok(lines.join("\n"))
+    rig.finish()?;
+    ensure!(
+        (1..=OPEN_COIL_MS).contains(&longest_ms),
+        "an LED is lit for {longest_ms} ms, and no current flows"
+    );
+    let open = [Trouble::LiftCoilOpen, Trouble::LoweringCoilOpen];
+    ensure!(
+        open.iter().any(|trouble| reports(&rig.said, *trouble)),
+        "no open coil is reported: {:?}",
+        reported(&rig.said)
+    );
+    Ok(longest_ms)
+}
+
+/// With the filters the coil counts as connected. The lift LED is lit for longer, until the angle that stands still is a fault.
+/// Returns its longest flash, ms.
+fn with_filters(setup: &Setup, model: &Model) -> Result<usize> {
+    let (mut rig, mut wires) = powered_up(setup, model, true)?;
+    let [lift, _] = turn(&mut rig, &mut wires, 115.0, TURNED_MS)?;
+    let longest_ms = lift.into_iter().fold(0, usize::max);
+    ensure!(
+        longest_ms > OPEN_COIL_MS,
+        "the lift LED is lit for {longest_ms} ms at most; reported: {:?}",
+        reported(&rig.said)
+    );
+    ensure!(!rig.is_driven(), "an LED is still lit");
+    ensure!(
+        reports(&rig.said, Trouble::AngleFrozen),
+        "a frozen angle is not reported: {:?}",
+        reported(&rig.said)
+    );
+    rig.finish()?;
+    Ok(longest_ms)
+}
+
+/// Steps 1 to 3 of the bring-up.
+pub fn bring_up(setup: &Setup) -> Result<String> {
+    let model = hitch_model_file::nominal();
+    let without_ms = without_current(setup, &model)?;
+    let with_ms = with_filters(setup, &model)?;
+    Ok(format!(
+        "an LED is lit for up to {without_ms} ms without current, and for {with_ms} ms with the filters"
+    ))
 }
