@@ -12,6 +12,7 @@
 //!
 //! * `converter`, `scaling`, `panel`, `panel_inputs`: from codes and contacts to inputs,
 //! * `coil_driver`, `drive`, `enable_line`: from pulse widths to pins,
+//! * `can_port`: the bus by a driver of `embedded-can`,
 //! * `arbiter`, `status`: commands of an implement, and status to it,
 //! * `bus_watch`: troubles of the CAN controller,
 //! * `service`, `start_check`, `hardware`, `flow`, `pace`: storage, and the order and the time of it all,
@@ -27,6 +28,7 @@ extern crate std;
 mod application;
 mod arbiter;
 mod bus_watch;
+mod can_port;
 mod coil_driver;
 mod consent;
 mod converter;
@@ -45,6 +47,7 @@ mod task_sequence_monitor;
 mod tick_timer;
 
 pub use application::Ecu;
+pub use can_port::CanPort;
 pub use coil_driver::{CoilDriver, CoilDriverError};
 pub use converter::{AdcCode, Conversion, Samples, Signal};
 pub use drive::{Compare, Drive};
