@@ -45,6 +45,12 @@ impl Default for Settings<'_> {
 /// # Errors
 /// The first fault, with file, line and column.
 pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError> {
+    bus_log::check_known(path)?;
+    if let Some(format) = Format::of(path) {
+        let source = Arc::new(format.source(path)?);
+        let ecu = BusSettings::default();
+        return bus_log::read(&source, format, settings.bus.unwrap_or(&ecu));
+    }
     if mdf_log::is_mdf(path) {
         let file = MdfFile::open(path)?;
         return channel_log::read(&file, settings.columns, settings.linkage);
@@ -52,18 +58,8 @@ pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError
     if let Some(log) = NumberLog::open(path)? {
         return channel_log::read(&log, settings.columns, settings.linkage);
     }
-    bus_log::check_known(path)?;
-    match Format::of(path) {
-        Some(format) => {
-            let source = Arc::new(format.source(path)?);
-            let ecu = BusSettings::default();
-            bus_log::read(&source, format, settings.bus.unwrap_or(&ecu))
-        }
-        None => {
-            let source = Arc::new(SourceFile::read_any(path)?);
-            csv_log::read(&source, settings.columns, settings.linkage)
-        }
-    }
+    let source = Arc::new(SourceFile::read_any(path)?);
+    csv_log::read(&source, settings.columns, settings.linkage)
 }
 
 /// The run of a part of a log; it may contain only currents. The oil temperature is the stated one, else the mean of the

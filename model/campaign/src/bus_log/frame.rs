@@ -8,6 +8,17 @@ const LARGEST_STANDARD: u32 = 0x7FF;
 /// Largest identifier with 29 bits.
 const LARGEST_EXTENDED: u32 = 0x1FFF_FFFF;
 
+/// The parameter group number of a J1939 identifier: without the destination address, which groups in the lower half
+/// have.
+pub fn group(id: u32) -> u32 {
+    const FIRST_BROADCAST: u32 = 240;
+    let group = id >> 8 & 0x3_FFFF;
+    match group >> 8 & 0xFF {
+        format if format < FIRST_BROADCAST => group & 0x3_FF00,
+        _ => group,
+    }
+}
+
 /// A frame identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Id {
@@ -23,6 +34,14 @@ impl Id {
         match is_extended {
             true => (raw <= LARGEST_EXTENDED).then_some(Self::Extended(raw)),
             false => (raw <= LARGEST_STANDARD).then_some(Self::Standard(raw)),
+        }
+    }
+
+    /// Its parameter group, if it has 29 bits.
+    pub fn group(self) -> Option<u32> {
+        match self {
+            Self::Extended(raw) => Some(group(raw)),
+            Self::Standard(_) => None,
         }
     }
 }

@@ -6,7 +6,7 @@ use hitch_input::source_file::SourceFile;
 use crate::CampaignError;
 use crate::bus_log::clock::Clock;
 use crate::bus_log::description::Match;
-use crate::bus_log::frame::{Frame, Id};
+use crate::bus_log::frame::{Frame, Id, group};
 use crate::bus_log::frame_sink::FrameSink;
 use crate::bus_log::signal::Signal;
 use crate::series::Series;
@@ -84,6 +84,11 @@ impl<'s> Listener<'s> {
             clocks: Vec::new(),
             first_s: None,
         }
+    }
+
+    /// Time stamp of time 0, s.
+    pub fn origin_s(&self) -> f64 {
+        self.first_s.unwrap_or_default()
     }
 
     /// The received series of each column.
@@ -237,9 +242,9 @@ impl Match {
     pub fn sender(self, id: Id) -> Option<Option<u8>> {
         match (self, id) {
             (Self::Identifier(known), id) => (known == id).then_some(None),
-            (Self::Group(known), Id::Extended(raw)) => (crate::bus_log::description::group(raw)
-                == known)
-                .then_some(Some(raw.to_le_bytes()[0])),
+            (Self::Group(known), Id::Extended(raw)) => {
+                (group(raw) == known).then_some(Some(raw.to_le_bytes()[0]))
+            }
             (Self::Group(_), Id::Standard(_)) => None,
         }
     }
