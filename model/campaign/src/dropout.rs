@@ -4,7 +4,7 @@
 //! if the error is small: it is short compared to the valve's own lag, or the current is the same on both sides.
 
 /// Longest gap that is always filled, s. A step within it is shifted by at most half of it.
-const SHORT_GAP_S: f64 = 0.2;
+pub const SHORT_GAP_S: f64 = 0.2;
 /// Longest gap that is filled if the current is the same on both sides, s.
 const STEADY_GAP_S: f64 = 2.0;
 /// Difference below which two currents are the same, A: ten times the noise of a logged current.

@@ -8,6 +8,8 @@ use hitch_input::source_file::SourceFile;
 use hitch_plant::Channel;
 
 use crate::cut::Cut;
+use crate::dropout::SHORT_GAP_S as LONGEST_GAP_S;
+use crate::series::median_step_s;
 use crate::{CampaignError, Run, dropout};
 
 /// Longest step between two samples, s: the valve motion within a longer one is unknown.
@@ -84,11 +86,14 @@ pub struct Samples {
 /// The numbers of a log by column; NaN for empty cells.
 #[derive(Debug, Clone)]
 pub struct Table {
-    source: Arc<SourceFile>,
+    /// The files, each with its first row.
+    sources: Vec<(usize, Arc<SourceFile>)>,
     columns: Vec<Samples>,
-    /// Byte offset of each row in the file.
+    /// Byte offset of each row in its file.
     rows: Vec<usize>,
     cells: Cells,
+    /// Time of the logger's clock at time 0, s; zero if it is unknown.
+    origin_s: f64,
 }
 
 impl Table {
@@ -110,12 +115,67 @@ impl Table {
                 Err(source.error(what, mend))
             }
             _ => Ok(Self {
-                source,
+                sources: vec![(0, source)],
                 columns,
                 rows,
                 cells,
+                origin_s: 0.0,
             }),
         }
+    }
+
+    /// The same table, whose time 0 is that of the logger's clock, s.
+    pub fn since(self, origin_s: f64) -> Self {
+        Self { origin_s, ..self }
+    }
+
+    /// Whether another table has the same columns, and times that continue: it belongs to the same recording.
+    pub fn is_continued_by(&self, next: &Self) -> bool {
+        let names = |table: &Self| {
+            table
+                .columns
+                .iter()
+                .map(|column| column.name)
+                .collect::<Vec<_>>()
+        };
+        let times_s = self.column(TIME).unwrap_or_default();
+        let next_s = next.column(TIME).unwrap_or_default().first();
+        let Some((last_s, next_s)) = times_s.last().zip(next_s) else {
+            return false;
+        };
+        let step_s = next.origin_s + next_s - (self.origin_s + last_s);
+        let is_next = step_s > 0.0 && step_s - median_step_s(times_s) <= LONGEST_GAP_S;
+        is_next && names(self) == names(next)
+    }
+
+    /// The rows of this table, and below them those of the next file of its recording.
+    ///
+    /// # Errors
+    /// The next table does not continue this one.
+    pub fn joined(mut self, next: &Self) -> Result<Self, CampaignError> {
+        if !self.is_continued_by(next) {
+            let what = format!("does not continue {}", self.sources[0].1.path.display());
+            let mend = "joined files have the same columns, and times that continue: give it a [[run]] block of its own";
+            return Err(next.sources[0].1.error(what, mend));
+        }
+        let later_s = next.origin_s - self.origin_s;
+        let rows = self.rows.len();
+        let sources = next.sources.iter();
+        self.sources
+            .extend(sources.map(|(row, source)| (rows + row, Arc::clone(source))));
+        self.rows.extend(&next.rows);
+        for (own, samples) in self.columns.iter_mut().zip(&next.columns) {
+            let later = if own.name == TIME { later_s } else { 0.0 };
+            own.values
+                .extend(samples.values.iter().map(|value| value + later));
+        }
+        Ok(self)
+    }
+
+    /// The file of a row.
+    fn source(&self, row: usize) -> &Arc<SourceFile> {
+        let after = self.sources.partition_point(|(first, _)| *first <= row);
+        &self.sources[after.saturating_sub(1)].1
     }
 
     /// The rows of a time span.
@@ -139,17 +199,21 @@ impl Table {
                 "a run needs at least {}; from_s and to_s are seconds after the first sample",
                 Run::FEWEST_SAMPLES
             );
-            return Err(self.source.error(what, mend));
+            return Err(self.source(0).error(what, mend));
         }
+        let before = stays.iter().take_while(|stays| !**stays).count();
+        let sources = self.sources.iter();
+        let sources = sources.map(|(row, source)| (row.saturating_sub(before), Arc::clone(source)));
         let columns = self.columns.iter().map(|samples| Samples {
             values: kept_of(&samples.values, &stays),
             ..*samples
         });
         Ok(Self {
-            source: Arc::clone(&self.source),
+            sources: sources.collect(),
             columns: columns.collect(),
             rows: kept_of(&self.rows, &stays),
             cells: self.cells,
+            origin_s: self.origin_s,
         })
     }
 
@@ -169,8 +233,8 @@ impl Table {
             let what = format!("column {name} is missing");
             let mend = format!("log it: every run needs {TIME}, {LIFT} and {LOWER}");
             match self.cells {
-                Cells::Nowhere => self.source.error(what, mend),
-                _ => self.source.error_at(0, what, mend),
+                Cells::Nowhere => self.source(0).error(what, mend),
+                _ => self.source(0).error_at(0, what, mend),
             }
         })
     }
@@ -240,9 +304,9 @@ impl Table {
         let cell = samples.map_or(0, |samples| samples.cell);
         let byte = self.rows.get(row).copied().unwrap_or(0);
         match self.cells {
-            Cells::Between(mark) => cell_error(&self.source, byte, (cell, mark), what, mend),
-            Cells::OneALine => self.source.error_at(byte, what, mend),
-            Cells::Nowhere => self.source.error(what, mend),
+            Cells::Between(mark) => cell_error(self.source(row), byte, (cell, mark), what, mend),
+            Cells::OneALine => self.source(row).error_at(byte, what, mend),
+            Cells::Nowhere => self.source(row).error(what, mend),
         }
     }
 }
@@ -277,6 +341,13 @@ pub fn cell_error(
 /// Number of characters of a row before its cell `index`.
 fn cells_before(row: &str, index: usize, mark: char) -> usize {
     let (mut quoted, mut marks) = (false, 0);
+    if mark == ' ' {
+        // Several spaces are one separator.
+        let cell = row.split_whitespace().nth(index).unwrap_or_default();
+        let byte = (cell.as_ptr() as usize).checked_sub(row.as_ptr() as usize);
+        let before = byte.and_then(|byte| row.get(..byte)).unwrap_or_default();
+        return before.chars().count();
+    }
     for (characters, c) in row.chars().enumerate() {
         if marks == index {
             return characters;

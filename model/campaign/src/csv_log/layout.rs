@@ -4,8 +4,8 @@ use csv::StringRecord;
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
-use crate::csv_log::clock::{Times, is_clock};
-use crate::csv_log::dialect::{Decimals, Header, is_sample, rows};
+use crate::csv_log::clock::{DateOrder, Times, is_clock, is_date};
+use crate::csv_log::dialect::{Decimals, Header, is_missing, is_sample, rows};
 use crate::scale::spelling;
 use crate::table::cell_error;
 use crate::time_base::{Seen, bases, is_time_name, is_unit_of_time, notes, rises};
@@ -23,6 +23,8 @@ pub struct Layout<'s> {
     shift: usize,
     /// Form of the numbers, by column.
     pub decimals: Vec<Decimals>,
+    /// Order of day and month, by column.
+    pub orders: Vec<DateOrder>,
     /// The column of times of each column.
     pub bases: Vec<Option<usize>>,
     /// What was assumed, one line each.
@@ -63,6 +65,7 @@ impl<'s> Layout<'s> {
             source,
             shift: 0,
             decimals: Vec::new(),
+            orders: Vec::new(),
             bases: Vec::new(),
             notes: Vec::new(),
             header,
@@ -73,11 +76,13 @@ impl<'s> Layout<'s> {
             layout.notes.push(names.to_owned());
         }
         layout.decimals = layout.decimals_of(&first);
+        layout.orders = layout.orders_of(&first);
         let seen: Vec<Seen> = (0..layout.header.cells.len())
             .map(|column| layout.seen(column, &first))
             .collect();
         layout.bases = bases(&seen);
         layout.notes.extend(notes(&seen, &layout.bases));
+        layout.note_dates(&seen, &first);
         layout
     }
 
@@ -112,8 +117,7 @@ impl<'s> Layout<'s> {
         let of_table = Decimals::of(columns.clone().flat_map(cells));
         let mut all = Vec::with_capacity(columns.len());
         for column in columns {
-            let has_digits = |cell: &&str| cell.bytes().any(|byte| byte.is_ascii_digit());
-            let filled: Vec<&str> = cells(column).filter(has_digits).collect();
+            let filled: Vec<&str> = cells(column).filter(|cell| !is_missing(cell)).collect();
             let (decimals, thousands) = of_table.of_column(&filled);
             if let Some(mark) = thousands {
                 let name = &self.header.cells[column].name;
@@ -126,14 +130,55 @@ impl<'s> Layout<'s> {
         all
     }
 
+    /// The order of the dates of each column, from all its rows.
+    fn orders_of(&mut self, first: &[StringRecord]) -> Vec<DateOrder> {
+        let mut orders = Vec::new();
+        for column in 0..self.header.cells.len() {
+            let cell = column + self.shift;
+            let mut begin = first.iter().filter_map(|row| row.get(cell));
+            if !begin.find(|cell| !is_missing(cell)).is_some_and(is_clock) {
+                orders.push(DateOrder::default());
+                continue;
+            }
+            let all: Vec<String> = rows(&self.source.text, self.header.data_byte, self.header.mark)
+                .filter_map(|(_, row)| row.get(cell).map(str::to_owned))
+                .filter(|cell| is_clock(cell))
+                .collect();
+            let (order, matters) = DateOrder::of(all.iter().map(String::as_str));
+            if matters {
+                let name = &self.header.cells[column].name;
+                let order = order.name();
+                self.notes.push(format!(
+                    "assumed: the dates of \"{name}\" are {order}, in which they continue"
+                ));
+            }
+            orders.push(order);
+        }
+        orders
+    }
+
+    /// Notes the columns of dates beside times of day.
+    fn note_dates(&mut self, seen: &[Seen], first: &[StringRecord]) {
+        let Some(times) = seen.iter().find(|seen| seen.is_clock) else {
+            return;
+        };
+        for column in 0..seen.len() {
+            let mut cells = first.iter().map(|row| row.get(column + self.shift));
+            if cells.next().flatten().is_some_and(is_date) {
+                self.notes.push(format!(
+                    "the dates of \"{}\" are not read: the times of \"{}\" continue over midnight",
+                    seen[column].name, times.name
+                ));
+            }
+        }
+    }
+
     fn seen(&self, column: usize, first: &[StringRecord]) -> Seen {
         let cell = &self.header.cells[column];
         let unit = cell.unit.as_deref().map(spelling);
         let cells = first.iter().filter_map(|row| row.get(column + self.shift));
-        let filled: Vec<&str> = cells
-            .filter(|cell| cell.bytes().any(|b| b.is_ascii_digit()))
-            .collect();
-        let mut times = Times::new(None);
+        let filled: Vec<&str> = cells.filter(|cell| !is_missing(cell)).collect();
+        let mut times = Times::new(None, self.orders[column]);
         let values: Vec<f64> = filled
             .iter()
             .filter_map(|text| match is_clock(text) {

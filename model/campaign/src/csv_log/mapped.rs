@@ -9,9 +9,10 @@ use hitch_plant::Linkage;
 use crate::CampaignError;
 use crate::columns::{ColumnSettings, Source, offer_columns};
 use crate::csv_log::clock::Times;
+use crate::csv_log::dialect::is_missing;
 use crate::csv_log::layout::{Layout, Row};
 use crate::scale::{Scale, is_time};
-use crate::series::{Series, values};
+use crate::series::{Series, median_step_s, values};
 use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
 use crate::time_base::{self, base_of};
 
@@ -111,7 +112,7 @@ impl<'a> Reader<'a> {
         let unit = |index: usize| layout.header.cells[index].unit.as_deref();
         let column_of = |index: usize, scale| TimeColumn {
             index,
-            times: Times::new(scale),
+            times: Times::new(scale, layout.orders[index]),
             times_s: Vec::new(),
             bytes: Vec::new(),
         };
@@ -160,11 +161,13 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let Some(time_s) = time.times.read(cell) else {
-                let what = format!(
-                    "{} is not a time in the format of the previous ones",
-                    quote(cell)
-                );
-                let mend = "every row needs a time: a number, a date with a time, or a time of day";
+                let as_before = match time.times_s.is_empty() {
+                    true => "",
+                    false => " in the form of those above",
+                };
+                let what = format!("{} is not a time{as_before}", quote(cell));
+                let mend = "every row needs a number, a date with a time of day (21.11.2026 10:00:00.020, \
+                            2026-11-21T10:00:00Z, 21-Nov-2026 10:00:00), or a time of day";
                 return Ok(Some(layout.fault(row.byte, time.index, what, mend)));
             };
             for own in own().collect::<Vec<usize>>() {
@@ -193,11 +196,7 @@ impl<'a> Reader<'a> {
             let mend = "log the run again";
             return Err(source.error("contains a header but no samples", mend));
         }
-        let of_rows = Series {
-            times_s: rows.times_s.clone(),
-            ..Series::default()
-        };
-        let within_s = of_rows.median_step_s() / 2.0;
+        let within_s = median_step_s(&rows.times_s) / 2.0;
         let mut columns = vec![Samples {
             name: TIME,
             cell: layout.cell(rows.index),
@@ -234,7 +233,8 @@ impl<'a> Reader<'a> {
             });
         }
         let cells = Cells::Between(layout.header.mark.into());
-        Table::new(Arc::clone(source), columns, rows.bytes.clone(), cells)
+        let table = Table::new(Arc::clone(source), columns, rows.bytes.clone(), cells)?;
+        Ok(table.since(rows.times.origin_s()))
     }
 }
 
@@ -263,7 +263,7 @@ fn value(
     cell: &str,
 ) -> Result<f64, (String, String)> {
     let MappedColumn { column, name, .. } = taken;
-    if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
+    if is_missing(cell) {
         return Ok(f64::NAN);
     }
     let Some(number) = layout.decimals[taken.index].number(cell) else {

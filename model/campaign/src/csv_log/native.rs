@@ -59,7 +59,8 @@ fn mark(source: &SourceFile) -> u8 {
         })
     };
     // Of several equal ones the last is chosen.
-    MARKS.into_iter().max_by_key(known).unwrap_or(b',')
+    let marks = MARKS.into_iter().filter(|mark| *mark != b' ');
+    marks.max_by_key(known).unwrap_or(b',')
 }
 
 /// The decimal mark: never a comma if commas are separators.

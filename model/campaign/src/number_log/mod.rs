@@ -15,7 +15,7 @@ use hitch_input::source_file::SourceFile;
 use crate::CampaignError;
 use crate::channel_log::{self, ChannelFile, LogChannel};
 use crate::columns::Source;
-use crate::csv_log::clock::Times;
+use crate::csv_log::clock::{DateOrder, Times};
 use crate::scale::spelling;
 use crate::series::Series;
 use crate::survey::{LogColumn, Survey};
@@ -119,7 +119,7 @@ impl NumberLog {
     ) -> Result<(&'s [f64], Times), CampaignError> {
         let column = &self.columns[index];
         if let Some(own) = &column.times {
-            return Ok((own, Times::new(None)));
+            return Ok((own, Times::new(None, DateOrder::default())));
         }
         let Some(time) = time else {
             let what = format!("no column is assigned to {TIME}");
@@ -150,7 +150,7 @@ impl NumberLog {
             true => main_scale,
             false => time_base::scale(unit(base), main_scale),
         };
-        Ok((&found.values, Times::new(scale)))
+        Ok((&found.values, Times::new(scale, DateOrder::default())))
     }
 }
 
