@@ -142,11 +142,28 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`].
     pub fn of_manifest(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
-        let source = SourceFile {
-            path: dir.join("campaign.toml"),
-            text: text.to_owned(),
-        };
-        manifest::read(dir, &source, linkage)
+        manifest::read(dir, &of_text(dir, text), linkage)
+    }
+
+    /// Whether the log of each run of a manifest's text continues that of the run before it: the same columns, and times
+    /// that continue. Such logs belong to one recording.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn continued(
+        dir: &Path,
+        text: &str,
+        linkage: &Linkage,
+    ) -> Result<Vec<bool>, CampaignError> {
+        manifest::continued(dir, &of_text(dir, text), linkage)
+    }
+}
+
+/// The text of a manifest in a folder.
+fn of_text(dir: &Path, text: &str) -> SourceFile {
+    SourceFile {
+        path: dir.join("campaign.toml"),
+        text: text.to_owned(),
     }
 }
 
