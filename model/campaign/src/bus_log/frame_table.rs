@@ -220,7 +220,7 @@ mod tests {
             edge.replace("1.5;", "x;"),
             edge.replace("18FF4580", "FFFFFFFF"),
         ] {
-            assert_eq!(frames(&bad).unwrap_err().position.unwrap().line, 2);
+            assert_eq!(frames(&bad).unwrap_err().place.unwrap().line, 2);
         }
     }
 }
