@@ -1,7 +1,7 @@
 //! Splits a log into runs: where its clock jumps, and a long one where the hitch is at rest. Each starts at rest.
 
-use hitch_campaign::Run;
 use hitch_campaign::survey::LONGEST_GAP_S;
+use hitch_campaign::{Bench, Run};
 use hitch_plant::Channel;
 
 /// Current below which no valve opens, A.
@@ -47,7 +47,9 @@ pub fn cuts(run: &Run) -> Cuts {
                 "its clock jumps from {from_s:.2} s to {to_s:.2} s: the run is split there"
             ));
         }
-        let rest = match begins_in_motion(run, begin, end) {
+        // A flow bench has nothing that moves.
+        let is_hitch = matches!(run.bench, Bench::Hitch { .. });
+        let rest = match is_hitch && begins_in_motion(run, begin, end) {
             true => next_rest(run, begin, end),
             false => Some(begin),
         };
@@ -61,7 +63,7 @@ pub fn cuts(run: &Run) -> Cuts {
                         "it is in motion at {from_s:.2} s: the run begins at the next rest, at {rest_s:.2} s"
                     ));
                 }
-                if to_s - rest_s >= LONG_LOG_S {
+                if to_s - rest_s >= LONG_LOG_S && !moves.is_empty() {
                     cuts.runs.extend(between_rests(run, &moves, (rest_s, to_s)));
                 } else {
                     cuts.runs.push((rest_s, to_s));
@@ -185,7 +187,6 @@ fn is_calm(run: &Run, before: usize, sample: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hitch_campaign::Bench;
 
     /// A lift from 4 s to 6 s in a log of 10 s at 50 Hz, from `from_s` on, whose clock then jumps by `jump_s` at 8 s.
     fn lift(from_s: f64, jump_s: f64) -> Run {
