@@ -31,7 +31,7 @@ fn log(id: &str) -> String {
 fn manifest(settings: &str) -> String {
     format!(
         "format = 1\n[can]\ndbc = \"a.dbc\"\n{settings}[can.signals]\n{SIGNALS}\
-         [[run]]\nfile = \"a.log\"\nload_kg = 150\n"
+         [[run]]\nfile = \"a.log\"\nbench = \"hitch\"\nload_kg = 150\n"
     )
 }
 
