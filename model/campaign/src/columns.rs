@@ -185,6 +185,11 @@ impl ColumnSettings {
         }
     }
 
+    /// Whether they are those of [`Self::by_own_names`].
+    pub fn are_own_names(&self) -> bool {
+        self.sources.iter().all(|source| !source.is_required)
+    }
+
     /// Reads the table `[columns]` of a campaign, or of one of its runs.
     ///
     /// # Errors

@@ -32,7 +32,7 @@ mod time_base;
 
 use std::path::{Path, PathBuf};
 
-pub use csv_log::{flow_curve, linkage_table};
+pub use csv_log::number_table;
 
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;

@@ -1,5 +1,7 @@
 //! `hitch model`: creates a model file from data sheets, and fits its constants to a campaign.
 pub mod fit;
+mod flow_curve;
+mod linkage_table;
 pub mod new;
 
 use clap::Subcommand;

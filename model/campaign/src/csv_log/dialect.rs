@@ -155,7 +155,8 @@ impl Header {
         })
     }
 
-    fn at(text: &str, mark: u8, byte: usize, row: &StringRecord) -> Self {
+    /// The header in this row, with the units below it.
+    pub fn at(text: &str, mark: u8, byte: usize, row: &StringRecord) -> Self {
         let mut cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
         let mut below = rows(text, byte, mark)
             .skip(1)

@@ -31,6 +31,15 @@ pub struct Layout<'s> {
     pub notes: Vec<String>,
 }
 
+/// The lines below the samples of a table, which are left out.
+#[derive(Debug, Default)]
+pub struct Below {
+    /// Their number.
+    pub lines: usize,
+    /// The fault of the first one.
+    pub fault: Option<CampaignError>,
+}
+
 /// A row of a table.
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'r> {
@@ -56,11 +65,6 @@ impl<'r> Row<'r> {
 impl<'s> Layout<'s> {
     /// Examines the first rows below a header.
     pub fn new(source: &'s SourceFile, header: Header) -> Self {
-        let first: Vec<StringRecord> = rows(&source.text, header.data_byte, header.mark)
-            .take(EXAMINED_ROWS)
-            .map(|(_, row)| row)
-            .filter(|row| !row.iter().all(str::is_empty))
-            .collect();
         let mut layout = Self {
             source,
             shift: 0,
@@ -70,6 +74,12 @@ impl<'s> Layout<'s> {
             notes: Vec::new(),
             header,
         };
+        let first: Vec<StringRecord> = layout
+            .records()
+            .take(EXAMINED_ROWS)
+            .map(|(_, row)| row)
+            .filter(|row| !row.iter().all(str::is_empty))
+            .collect();
         if layout.has_row_names(&first) {
             layout.shift = 1;
             let names = "the first cell of each row has no name above it: it is read as the name of the row";
@@ -84,6 +94,11 @@ impl<'s> Layout<'s> {
         layout.notes.extend(notes(&seen, &layout.bases));
         layout.note_dates(&seen, &first);
         layout
+    }
+
+    /// The rows below the header, each with its byte offset.
+    fn records(&self) -> impl Iterator<Item = (usize, StringRecord)> {
+        rows(&self.source.text, self.header.data_byte, self.header.mark)
     }
 
     /// Whether each row has one more cell than the header, the first of which names the row.
@@ -140,7 +155,8 @@ impl<'s> Layout<'s> {
                 orders.push(DateOrder::default());
                 continue;
             }
-            let all: Vec<String> = rows(&self.source.text, self.header.data_byte, self.header.mark)
+            let all: Vec<String> = self
+                .records()
                 .filter_map(|(_, row)| row.get(cell).map(str::to_owned))
                 .filter(|cell| is_clock(cell))
                 .collect();
@@ -197,17 +213,17 @@ impl<'s> Layout<'s> {
     }
 
     /// Calls `take` for each row with a sample. A fault that it returns as a value is tolerated in the last row, as are
-    /// lines below the samples. Returns the number of lines that were left out.
+    /// lines below the samples. Returns these lines.
     ///
     /// # Errors
     /// The first row with more or fewer cells than the header, or fault of `take`.
     pub fn each_row(
         &self,
         mut take: impl FnMut(Row<'_>) -> Result<Option<CampaignError>, CampaignError>,
-    ) -> Result<usize, CampaignError> {
-        let mut fault: Option<CampaignError> = None;
-        let (mut left_out, mut only_remarks, mut samples) = (0, true, 0);
-        for (byte, record) in rows(&self.source.text, self.header.data_byte, self.header.mark) {
+    ) -> Result<Below, CampaignError> {
+        let mut below = Below::default();
+        let (mut only_remarks, mut samples) = (true, 0);
+        for (byte, record) in self.records() {
             if record.iter().all(str::is_empty) {
                 continue;
             }
@@ -220,19 +236,19 @@ impl<'s> Layout<'s> {
                 Some(misfit) => Some(misfit),
                 None => take(row)?,
             };
-            match (found, fault.take()) {
+            match (found, below.fault.take()) {
                 (None, Some(before)) => return Err(before),
                 (None, None) => samples += 1,
                 (Some(found), before) => {
-                    left_out += 1;
+                    below.lines += 1;
                     only_remarks &= !is_sample(&record);
-                    fault = before.or(Some(found));
+                    below.fault = before.or(Some(found));
                 }
             }
         }
-        match fault {
-            Some(fault) if samples == 0 || (left_out > 1 && !only_remarks) => Err(fault),
-            _ => Ok(left_out),
+        match below.fault {
+            Some(fault) if samples == 0 || (below.lines > 1 && !only_remarks) => Err(fault),
+            _ => Ok(below),
         }
     }
 

@@ -26,6 +26,8 @@ struct MappedColumn {
     /// Index of its times among those that are read.
     times: usize,
     values: Vec<f64>,
+    /// Whether the log has the name and the unit of the format.
+    is_own: bool,
 }
 
 /// A column of times.
@@ -57,8 +59,12 @@ pub fn read(
     linkage: &Linkage,
 ) -> Result<Table, CampaignError> {
     let mut reader = Reader::new(source, layout, settings, linkage)?;
-    layout.each_row(|row| reader.push(row))?;
-    reader.table(source)
+    let below = layout.each_row(|row| reader.push(row))?;
+    match below.fault {
+        // Only another logger's file may end with remarks, or in the middle of a row.
+        Some(fault) if settings.are_own_names() => Err(fault),
+        _ => reader.table(source),
+    }
 }
 
 /// Index of a column; `None` if it is missing and optional.
@@ -140,6 +146,7 @@ impl<'a> Reader<'a> {
                 scale,
                 times: place,
                 values: Vec::new(),
+                is_own: settings.are_own_names(),
             });
         }
         Ok(Self {
@@ -204,7 +211,7 @@ impl<'a> Reader<'a> {
         }];
         for taken in &self.columns {
             let times = &self.times[taken.times];
-            if taken.values.iter().all(|value| value.is_nan()) {
+            if !taken.is_own && taken.values.iter().all(|value| value.is_nan()) {
                 let what = format!("column {} contains no number", quote(&taken.name));
                 let mend = "assign another column, or delete its line under [columns]";
                 return Err(layout.fault_of_name(taken.index, what, mend));
@@ -263,7 +270,7 @@ fn value(
     cell: &str,
 ) -> Result<f64, (String, String)> {
     let MappedColumn { column, name, .. } = taken;
-    if is_missing(cell) {
+    if cell.is_empty() || (is_missing(cell) && !taken.is_own) {
         return Ok(f64::NAN);
     }
     let Some(number) = layout.decimals[taken.index].number(cell) else {
@@ -275,15 +282,25 @@ fn value(
     if column.range.contains(&value) {
         return Ok(value);
     }
-    let what = format!(
-        "{} in column {} would be {} = {value}",
-        quote(cell),
-        quote(name),
-        column.name
+    let range = format!(
+        "the range is {} to {}",
+        column.range.start(),
+        column.range.end()
     );
-    let (low, high) = (column.range.start(), column.range.end());
-    let mend = format!(
-        "the range is {low} to {high}: check the unit under [columns], and leave the cell of a dropout empty"
-    );
-    Err((what, mend))
+    let empty = "leave the cell of a dropout empty";
+    Err(match taken.is_own {
+        true => (
+            format!("{value} in column {name} is out of range"),
+            format!("{range}; {empty}"),
+        ),
+        false => (
+            format!(
+                "{} in column {} would be {} = {value}",
+                quote(cell),
+                quote(name),
+                column.name
+            ),
+            format!("{range}: check the unit under [columns], and {empty}"),
+        ),
+    })
 }

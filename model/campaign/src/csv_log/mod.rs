@@ -1,12 +1,10 @@
 //! Text tables: the project's own format, whose header has the columns' names, and any other by `[columns]`.
 pub mod clock;
 pub mod dialect;
-pub mod flow_curve;
 mod layout;
-pub mod linkage_table;
 mod mapped;
 mod native;
-mod number_table;
+pub mod number_table;
 
 use std::sync::Arc;
 
@@ -31,7 +29,7 @@ pub fn read(
     linkage: &Linkage,
 ) -> Result<Table, CampaignError> {
     let Some(settings) = settings else {
-        return native::read(source);
+        return native::read(source, linkage);
     };
     let names: Vec<&str> = settings
         .sources
@@ -40,7 +38,7 @@ pub fn read(
         .collect();
     match Header::with_names(&source.text, &names) {
         Some(header) => mapped::read(source, &Layout::new(source, header), settings, linkage),
-        None if native::has_own_header(source) => native::read(source),
+        None if native::has_own_header(source) => native::read(source, linkage),
         None => Err(no_header(source, &names)),
     }
 }
@@ -73,7 +71,7 @@ pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
     let layout = Layout::new(source, header);
     let mut columns: Vec<LogColumn> = layout.header.cells.iter().map(empty_column).collect();
     let mut rows = 0;
-    let left_out = layout.each_row(|row| {
+    let below = layout.each_row(|row| {
         rows += 1;
         for (index, column) in columns.iter_mut().enumerate().filter(|_| rows <= MOST_ROWS) {
             let cell = row.cell(index);
@@ -85,7 +83,7 @@ pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
         Ok(None)
     })?;
     let mut notes = layout.notes.clone();
-    match left_out {
+    match below.lines {
         0 => {}
         1 => notes.push("a line below the samples is left out".to_owned()),
         lines => notes.push(format!("{lines} lines below the samples are left out")),

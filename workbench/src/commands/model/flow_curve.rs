@@ -7,7 +7,7 @@ use hitch_input::source_file::SourceFile;
 use hitch_plant::units::M3_S_PER_LPM;
 use hitch_plant::{ValveCurve, ValveCurveError};
 
-use crate::csv_log::number_table::{NumberTable, Wanted};
+use hitch_campaign::number_table::{NumberTable, Wanted};
 
 const EXAMPLE: &str = "Current [A];Flow [l/min] or current_a,flow_lpm";
 
@@ -84,7 +84,7 @@ mod tests {
         assert_eq!(english.currents_a(), [0.0, 1.5, 2.0]);
         assert_eq!(english, german);
         let table =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join("../paper/data/table2a_lift_valve.csv");
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../model/paper/data/table2a_lift_valve.csv");
         let shipped = read(&table).expect("a curve");
         // The model omits collinear points at the end.
         let nominal = hitch_model_file::nominal();
