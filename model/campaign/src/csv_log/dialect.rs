@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use csv::StringRecord;
 
 use crate::csv_log::clock::is_clock;
+use crate::csv_log::lvm;
 use crate::scale::is_unit;
 use crate::time_base::is_time_name;
 
@@ -117,6 +118,9 @@ fn in_brackets(text: &str) -> Option<(&str, &str)> {
 impl Header {
     /// The row with the most of `names`; `None` if there is none.
     pub fn with_names(text: &str, names: &[&str]) -> Option<Self> {
+        if let Some(header) = lvm::header(text) {
+            return Some(header);
+        }
         let found = |row: &StringRecord| {
             let mut cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
             tell_apart(&mut cells);
@@ -137,7 +141,7 @@ impl Header {
 
     /// The row before the first samples, for a table with unknown names; `None` if the text is not a table.
     pub fn guessed(text: &str) -> Option<Self> {
-        MARKS.into_iter().find_map(|mark| {
+        let of_mark = |mark| {
             let rows: Vec<(usize, StringRecord)> =
                 rows(text, 0, mark).take(HEADER_WITHIN).collect();
             let width = usual_width(&rows)?;
@@ -152,7 +156,8 @@ impl Header {
             // Rows of units, comments and settings may be between them; of equal rows the uppermost has the names.
             let (byte, header) = possible.max_by_key(|(_, row)| names_in(row))?;
             Some(Self::at(text, mark, *byte, header))
-        })
+        };
+        lvm::header(text).or_else(|| MARKS.into_iter().find_map(of_mark))
     }
 
     /// The header in this row, with the units below it.

@@ -6,6 +6,7 @@ use hitch_input::source_file::SourceFile;
 use crate::CampaignError;
 use crate::csv_log::clock::{DateOrder, Times, is_clock, is_date};
 use crate::csv_log::dialect::{Decimals, Header, is_missing, is_sample, rows};
+use crate::csv_log::lvm::{self, Steps};
 use crate::scale::spelling;
 use crate::table::cell_error;
 use crate::time_base::{Seen, bases, is_time_name, is_unit_of_time, notes, rises};
@@ -17,6 +18,8 @@ const EXAMINED_ROWS: usize = 1_000;
 #[derive(Debug)]
 pub struct Layout<'s> {
     source: &'s SourceFile,
+    /// Times that are not in a column.
+    steps: Option<Steps>,
     /// Separator, names and units.
     pub header: Header,
     /// Number of cells of a row before its first named cell: 1 with row names.
@@ -67,6 +70,7 @@ impl<'s> Layout<'s> {
     pub fn new(source: &'s SourceFile, header: Header) -> Self {
         let mut layout = Self {
             source,
+            steps: lvm::steps(&source.text, &header),
             shift: 0,
             decimals: Vec::new(),
             orders: Vec::new(),
@@ -96,9 +100,19 @@ impl<'s> Layout<'s> {
         layout
     }
 
-    /// The rows below the header, each with its byte offset.
+    /// The rows below the header, each with its byte offset and its time.
     fn records(&self) -> impl Iterator<Item = (usize, StringRecord)> {
-        rows(&self.source.text, self.header.data_byte, self.header.mark)
+        let rows = rows(&self.source.text, self.header.data_byte, self.header.mark);
+        rows.enumerate()
+            .map(|(index, (byte, row))| match self.steps {
+                Some(Steps { first_s, step_s }) => {
+                    let time = (first_s + step_s * index as f64).to_string();
+                    let others = row.iter().skip(1);
+                    let cells = std::iter::once(time.as_str()).chain(others);
+                    (byte, cells.collect())
+                }
+                None => (byte, row),
+            })
     }
 
     /// Whether each row has one more cell than the header, the first of which names the row.

@@ -2,6 +2,7 @@
 pub mod clock;
 pub mod dialect;
 mod layout;
+mod lvm;
 mod mapped;
 mod native;
 pub mod number_table;
