@@ -235,8 +235,12 @@ impl Description {
         let mut selectors = Vec::new();
         let mut selected = signal;
         while let Some((switch, values)) = self.selection(message, selected) {
-            let switch = message.signals.iter().find(|signal| switch(signal));
-            selected = switch.ok_or_else(|| wrong(name, "is multiplexed without a multiplexor"))?;
+            let is_switch = |other: &&can_dbc::Signal| match switch {
+                Some(name) => other.name == name,
+                None => other.multiplexer_indicator == MultiplexIndicator::Multiplexor,
+            };
+            let found = message.signals.iter().find(is_switch);
+            selected = found.ok_or_else(|| wrong(name, "is multiplexed without a multiplexor"))?;
             let bits = bits(name, selected)?;
             selectors.push(Selector { bits, values });
             if selectors.len() > message.signals.len() {
@@ -246,15 +250,13 @@ impl Description {
         Ok(selectors)
     }
 
-    /// Which signal is the multiplexor of a signal, and its values that select it: of `SG_MUL_VAL_`, else of the signal.
-    fn selection<'d>(
-        &'d self,
+    /// The name of the multiplexor of a signal, `None` for that of the message, and its values that select the signal: of
+    /// `SG_MUL_VAL_`, else of the signal.
+    fn selection(
+        &self,
         message: &Message,
         signal: &can_dbc::Signal,
-    ) -> Option<(
-        Box<dyn Fn(&can_dbc::Signal) -> bool + 'd>,
-        Vec<RangeInclusive<u64>>,
-    )> {
+    ) -> Option<(Option<&str>, Vec<RangeInclusive<u64>>)> {
         let mut extended = self.dbc.extended_multiplex.iter();
         let ranges = extended
             .find(|ranges| ranges.message_id == message.id && ranges.signal_name == signal.name);
@@ -262,18 +264,12 @@ impl Description {
             let values = ranges.mappings.iter();
             let values = values.map(|range| range.min_value..=range.max_value);
             let switch = &ranges.multiplexor_signal_name;
-            return Some((
-                Box::new(move |other| other.name == *switch),
-                values.collect(),
-            ));
+            return Some((Some(switch), values.collect()));
         }
         match signal.multiplexer_indicator {
             MultiplexIndicator::MultiplexedSignal(value)
             | MultiplexIndicator::MultiplexorAndMultiplexedSignal(value) => {
-                let is_switch = |other: &can_dbc::Signal| {
-                    other.multiplexer_indicator == MultiplexIndicator::Multiplexor
-                };
-                Some((Box::new(is_switch), vec![value..=value]))
+                Some((None, vec![value..=value]))
             }
             MultiplexIndicator::Plain | MultiplexIndicator::Multiplexor => None,
         }

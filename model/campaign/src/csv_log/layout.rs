@@ -192,12 +192,12 @@ impl<'s> Layout<'s> {
         let Some(times) = seen.iter().find(|seen| seen.is_clock) else {
             return;
         };
-        for column in 0..seen.len() {
+        for (column, dates) in seen.iter().enumerate() {
             let mut cells = first.iter().map(|row| row.get(column + self.shift));
             if cells.next().flatten().is_some_and(is_date) {
                 self.notes.push(format!(
                     "the dates of \"{}\" are not read: the times of \"{}\" continue over midnight",
-                    seen[column].name, times.name
+                    dates.name, times.name
                 ));
             }
         }
