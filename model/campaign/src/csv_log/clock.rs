@@ -247,7 +247,7 @@ fn day_of(text: &str, order: DateOrder) -> Option<f64> {
         .collect();
     let is_digits = |word: &&str| word.bytes().all(|byte| byte.is_ascii_digit());
     let forms: &[&str] = match (words.first()?.len(), order) {
-        _ if !words.iter().all(|word| is_digits(word)) => &BY_NAME,
+        _ if !words.iter().all(is_digits) => &BY_NAME,
         (8, _) => &["%Y%m%d"],
         (4, _) => &["%Y %m %d"],
         (_, DateOrder::MonthFirst) if !text.contains('.') => &["%m %d %Y"],
