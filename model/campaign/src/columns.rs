@@ -100,6 +100,16 @@ impl Source {
         }
     }
 
+    /// The fault of a log that has columns or channels with other names.
+    pub fn missing(&self, kind: &str, names: &[&str]) -> (String, String) {
+        let what = format!(
+            "{kind} {} does not exist; [columns] assigns it to {}",
+            quote(&self.name),
+            self.column.name
+        );
+        (what, offer_columns(&self.name, names))
+    }
+
     /// Conversion from a value of the log to one of the run; `logged` is the unit that the log states.
     ///
     /// # Errors
@@ -119,6 +129,15 @@ impl Source {
         };
         Scale::of(unit, self.column).map_err(|what| (what, how_to_scale(self.column)))
     }
+}
+
+/// The fault of a log of columns or channels, none of which is assigned to a required column.
+pub fn unassigned(kind: &str, column: &Column) -> (String, String) {
+    let Column { name, unit, .. } = column;
+    (
+        format!("no {kind} is assigned to {name}"),
+        format!("assign it under [columns]: {name} = \"Name:{unit}\""),
+    )
 }
 
 fn how_to_scale(column: &Column) -> String {

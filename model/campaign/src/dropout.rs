@@ -47,33 +47,22 @@ fn fill(
     before: Option<usize>,
     after: Option<usize>,
 ) -> Result<(), Gap> {
-    let (from, to) = match (before, after) {
-        (None, None) => {
-            return Err(Gap {
-                sample: first,
-                duration_s: f64::INFINITY,
-            });
-        }
-        (Some(before), None) => (before, before),
-        (None, Some(after)) => (after, after),
-        (Some(before), Some(after)) => (before, after),
+    let gap = |duration_s| Gap {
+        sample: first,
+        duration_s,
     };
+    let nearest = before.or(after).zip(after.or(before));
+    let (from, to) = nearest.ok_or(gap(f64::INFINITY))?;
     let end = after.unwrap_or(current_a.len());
     let duration_s = time_s[after.unwrap_or(end - 1)] - time_s[before.unwrap_or(first)];
     let steady = from != to && (current_a[to] - current_a[from]).abs() < STEADY_WITHIN_A;
     if duration_s > if steady { STEADY_GAP_S } else { SHORT_GAP_S } {
-        return Err(Gap {
-            sample: first,
-            duration_s,
-        });
+        return Err(gap(duration_s));
     }
-    let (start_a, slope) = if from == to {
-        (current_a[from], 0.0)
-    } else {
-        (
-            current_a[from],
-            (current_a[to] - current_a[from]) / (time_s[to] - time_s[from]),
-        )
+    let start_a = current_a[from];
+    let slope = match from == to {
+        true => 0.0,
+        false => (current_a[to] - start_a) / (time_s[to] - time_s[from]),
     };
     for i in first..end {
         current_a[i] = start_a + slope * (time_s[i] - time_s[from]);
@@ -104,34 +93,11 @@ mod tests {
 
     #[test]
     fn long_gaps_are_refused_unless_the_current_is_steady() {
-        assert_eq!(
-            bridged(0.25, &[1.0, NAN, 2.0]),
-            Err(Gap {
-                sample: 1,
-                duration_s: 0.5
-            })
-        );
+        let gap = |sample, duration_s| Err(Gap { sample, duration_s });
+        assert_eq!(bridged(0.25, &[1.0, NAN, 2.0]), gap(1, 0.5));
         assert_eq!(bridged(0.25, &[1.0, NAN, 1.0]), Ok(vec![1.0, 1.0, 1.0]));
-        assert_eq!(
-            bridged(1.5, &[1.0, NAN, 1.0]),
-            Err(Gap {
-                sample: 1,
-                duration_s: 3.0
-            })
-        );
-        assert_eq!(
-            bridged(0.25, &[1.0, 1.0, NAN]),
-            Err(Gap {
-                sample: 2,
-                duration_s: 0.25
-            })
-        );
-        assert_eq!(
-            bridged(0.25, &[NAN, NAN]),
-            Err(Gap {
-                sample: 0,
-                duration_s: f64::INFINITY
-            })
-        );
+        assert_eq!(bridged(1.5, &[1.0, NAN, 1.0]), gap(1, 3.0));
+        assert_eq!(bridged(0.25, &[1.0, 1.0, NAN]), gap(2, 0.25));
+        assert_eq!(bridged(0.25, &[NAN, NAN]), gap(0, f64::INFINITY));
     }
 }

@@ -17,7 +17,6 @@ mod columns;
 mod csv_log;
 mod cut;
 mod dropout;
-mod files;
 mod little_endian;
 mod manifest;
 mod mdf_log;
@@ -31,8 +30,6 @@ mod table;
 mod time_base;
 
 use std::path::{Path, PathBuf};
-
-pub use csv_log::number_table;
 
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
@@ -134,7 +131,7 @@ impl Campaign {
     /// # Errors
     /// The manifest cannot be parsed.
     pub fn files(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
-        files::named(dir)
+        manifest::files(dir)
     }
 
     /// Reads the campaign of a folder with this text as its manifest, for a hitch with this linkage.

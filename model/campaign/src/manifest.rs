@@ -16,7 +16,7 @@ use crate::table::Table;
 use crate::{Bench, Campaign, CampaignError, Noise, Run, run_log};
 
 /// Key of the files in which a recording continues.
-pub const THEN: &str = "then";
+const THEN: &str = "then";
 /// The supported format version.
 const FORMAT: f64 = 1.0;
 /// Range of loads that the cylinder can hold below the relief pressure, with a margin, kg.
@@ -33,6 +33,22 @@ const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 /// Reads the folder of a campaign with a hitch of this linkage.
 pub fn load(dir: &Path, linkage: &Linkage) -> Result<Campaign, CampaignError> {
     read(dir, &SourceFile::read(&manifest_path(dir)?)?, linkage)
+}
+
+/// The logs and the DBC that the manifest in a folder refers to, in any folder.
+pub fn files(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
+    let source = SourceFile::read(&dir.join("campaign.toml"))?;
+    let top = TomlTable::parse(&source)?;
+    let mut files = Vec::new();
+    for run in top.tables("run")? {
+        files.extend(run.text("file")?.map(|file| dir.join(file)));
+        let then = run.texts(THEN)?.unwrap_or_default();
+        files.extend(then.into_iter().map(|file| dir.join(file)));
+    }
+    if let Some(can) = top.table("can")? {
+        files.extend(can.text("dbc")?.map(|file| dir.join(file)));
+    }
+    Ok(files)
 }
 
 /// Reads the campaign of a manifest located in `dir`.
@@ -110,10 +126,8 @@ fn manifest_path(dir: &Path) -> Result<PathBuf, CampaignError> {
 
 fn folder_name(dir: &Path) -> String {
     let full = dir.canonicalize().unwrap_or_else(|_| dir.to_path_buf());
-    full.file_name().map_or_else(
-        || "campaign".to_owned(),
-        |name| name.to_string_lossy().into_owned(),
-    )
+    let name = full.file_name().map(|name| name.to_string_lossy());
+    name.map_or_else(|| "campaign".to_owned(), Into::into)
 }
 
 fn check_format(top: &TomlTable<'_>) -> Result<(), CampaignError> {
@@ -151,11 +165,8 @@ fn runs(
 ) -> Result<Vec<Run>, CampaignError> {
     let tables = top.tables("run")?;
     if tables.is_empty() {
-        return Err(top.error_at(
-            "run",
-            "the campaign has no runs",
-            "add a [[run]] block for every log",
-        ));
+        let mend = "add a [[run]] block for every log";
+        return Err(top.error_at("run", "the campaign has no runs", mend));
     }
     let mut runs: Vec<Run> = Vec::with_capacity(tables.len());
     let mut parts: Vec<(&str, Cut)> = Vec::with_capacity(tables.len());

@@ -32,11 +32,6 @@ impl Series {
         self.bytes.push(byte);
     }
 
-    /// The median time between samples, s; infinite for a single one.
-    pub fn median_step_s(&self) -> f64 {
-        median_step_s(&self.times_s)
-    }
-
     /// The measurements at `times_s`, which rise. Each sample belongs to its nearest time, if it is within `within_s`, and is
     /// moved there with the slope between its neighbours; NaN at a time without a sample of its own.
     ///
@@ -123,10 +118,11 @@ impl Series {
     }
 }
 
-/// A column of a log from the samples of its signal: currents, which are inputs of the model, are interpolated; measured
+/// A column of a log from the samples of its signal, at its own times as they are. Elsewhere currents, which are inputs of the model, are interpolated; measured
 /// channels keep the noise of their samples.
 pub fn values(column: &str, series: &Series, times_s: &[f64], within_s: f64) -> Vec<f64> {
     match column {
+        _ if series.times_s == times_s => series.values.clone(),
         LIFT | LOWER => series.at(times_s, within_s),
         _ => series.measured_at(times_s, within_s),
     }

@@ -8,11 +8,12 @@ use hitch_input::source_file::SourceFile;
 use crate::bus_log::Format;
 use crate::mdf_log::MdfFile;
 use crate::number_log::NumberLog;
-use crate::scale::{above_air, is_unit_of};
+use crate::scale::{above_air, is_unit_of, spelling};
 use crate::table::{COLUMNS, TIME, column};
 use crate::{CampaignError, bus_log, channel_log, columns, csv_log, mdf_log};
 
 pub use crate::bus_log::Signals;
+pub use crate::csv_log::{TextTable, text_table};
 pub use crate::dropout::SHORT_GAP_S as LONGEST_GAP_S;
 pub use crate::time_base::{is_in, is_time_name, is_unit_of_time, unit_size_s, words};
 
@@ -35,6 +36,17 @@ pub struct LogColumn {
     pub lasts_s: Option<f64>,
     /// Why it cannot be used; `None` if it can.
     pub fault: Option<String>,
+}
+
+impl LogColumn {
+    /// A column without numbers; the log may spell its unit in any way.
+    pub(crate) fn new(name: &str, unit: Option<&str>) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: unit.map(|unit| spelling(unit).to_owned()),
+            ..Self::default()
+        }
+    }
 }
 
 /// Separator between the name of a channel and the name of its group, which is added to equal names.

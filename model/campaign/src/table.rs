@@ -9,13 +9,15 @@ use hitch_plant::Channel;
 
 use crate::cut::Cut;
 use crate::dropout::SHORT_GAP_S as LONGEST_GAP_S;
-use crate::series::median_step_s;
+use crate::series::{Series, median_step_s, values};
 use crate::{CampaignError, Run, dropout};
 
 /// Longest step between two samples, s: the valve motion within a longer one is unknown.
 const LONGEST_STEP_S: f64 = 2.0;
 /// Range of time stamps, s: beyond it, rounding errors affect the step between samples.
 const TIME_S: RangeInclusive<f64> = -1e7..=1e10;
+/// Range of currents, A.
+const CURRENT_A: RangeInclusive<f64> = -10.0..=10.0;
 
 /// Name of the time column.
 pub const TIME: &str = "time_s";
@@ -37,6 +39,20 @@ pub struct Column {
     pub range: RangeInclusive<f64>,
 }
 
+impl Column {
+    /// A value, if it is in the range.
+    ///
+    /// # Errors
+    /// What the value would be, and the range.
+    pub fn checked(&self, value: f64) -> Result<f64, (String, String)> {
+        let (low, high) = (self.range.start(), self.range.end());
+        let would_be = || format!("would be {} = {value}", self.name);
+        let range = || format!("the range is {low} to {high}");
+        let is_in = self.range.contains(&value);
+        is_in.then_some(value).ok_or_else(|| (would_be(), range()))
+    }
+}
+
 const fn known(name: &'static str, unit: &'static str, range: RangeInclusive<f64>) -> Column {
     Column { name, unit, range }
 }
@@ -44,11 +60,14 @@ const fn known(name: &'static str, unit: &'static str, range: RangeInclusive<f64
 /// The time column.
 pub static TIMES: Column = known(TIME, "s", TIME_S);
 
+/// The column of the lift current.
+pub static LIFTS: Column = known(LIFT, "A", CURRENT_A);
+
 /// All possible columns.
 pub static COLUMNS: [Column; 8] = [
     known(TIME, "s", TIME_S),
-    known(LIFT, "A", -10.0..=10.0),
-    known(LOWER, "A", -10.0..=10.0),
+    known(LIFT, "A", CURRENT_A),
+    known(LOWER, "A", CURRENT_A),
     known(Channel::PumpPressure.key(), "bar", -10.0..=1000.0),
     known(Channel::CylinderPressure.key(), "bar", -10.0..=1000.0),
     known(Channel::Flow.key(), "l/min", -1000.0..=1000.0),
@@ -74,13 +93,13 @@ pub enum Cells {
 
 /// The samples of one column.
 #[derive(Debug, Clone)]
-pub struct Samples {
+struct Samples {
     /// The column's name.
-    pub name: &'static str,
+    name: &'static str,
     /// Its cell index, if rows have cells.
-    pub cell: usize,
+    cell: usize,
     /// Its samples; NaN where missing.
-    pub values: Vec<f64>,
+    values: Vec<f64>,
 }
 
 /// The numbers of a log by column; NaN for empty cells.
@@ -101,7 +120,7 @@ impl Table {
     ///
     /// # Errors
     /// There are too few rows for a run.
-    pub fn new(
+    fn new(
         source: Arc<SourceFile>,
         columns: Vec<Samples>,
         rows: Vec<usize>,
@@ -124,6 +143,28 @@ impl Table {
         }
     }
 
+    /// The table whose rows are the samples of the lift current. Samples of other series are moved to the times of the
+    /// rows if one is within half a row; `time` and the series are given with their cells, if rows have cells.
+    ///
+    /// # Errors
+    /// There are too few rows for a run.
+    pub fn of_series<'s>(
+        source: &Arc<SourceFile>,
+        (time, rows): (usize, &Series),
+        series: impl Iterator<Item = (&'static str, usize, &'s Series)>,
+        cells: Cells,
+    ) -> Result<Self, CampaignError> {
+        let times_s = &rows.times_s;
+        let within_s = median_step_s(times_s) / 2.0;
+        let samples = |name, cell, values| Samples { name, cell, values };
+        let moved = |(name, cell, series): (_, _, &Series)| {
+            samples(name, cell, values(name, series, times_s, within_s))
+        };
+        let columns = std::iter::once(samples(TIME, time, times_s.clone()));
+        let columns = columns.chain(series.map(moved)).collect();
+        Self::new(Arc::clone(source), columns, rows.bytes.clone(), cells)
+    }
+
     /// The same table, whose time 0 is that of the logger's clock, s.
     pub fn since(self, origin_s: f64) -> Self {
         Self { origin_s, ..self }
@@ -131,13 +172,6 @@ impl Table {
 
     /// Whether another table has the same columns, and times that continue: it belongs to the same recording.
     pub fn is_continued_by(&self, next: &Self) -> bool {
-        let names = |table: &Self| {
-            table
-                .columns
-                .iter()
-                .map(|column| column.name)
-                .collect::<Vec<_>>()
-        };
         let times_s = self.column(TIME).unwrap_or_default();
         let next_s = next.column(TIME).unwrap_or_default().first();
         let Some((last_s, next_s)) = times_s.last().zip(next_s) else {
@@ -145,7 +179,8 @@ impl Table {
         };
         let step_s = next.origin_s + next_s - (self.origin_s + last_s);
         let is_next = step_s > 0.0 && step_s - median_step_s(times_s) <= LONGEST_GAP_S;
-        is_next && names(self) == names(next)
+        let [own, others] = [self, next].map(|table| table.columns.iter().map(|of| of.name));
+        is_next && own.eq(others)
     }
 
     /// The rows of this table, and below them those of the next file of its recording.
@@ -218,10 +253,8 @@ impl Table {
     }
 
     fn column(&self, name: &str) -> Option<&[f64]> {
-        self.columns
-            .iter()
-            .find(|samples| samples.name == name)
-            .map(|samples| samples.values.as_slice())
+        let found = self.columns.iter().find(|samples| samples.name == name);
+        found.map(|samples| samples.values.as_slice())
     }
 
     /// A required column.
@@ -242,10 +275,8 @@ impl Table {
     /// A measured column, if it exists and has values.
     pub fn measured(&self, name: &str) -> Option<Vec<f64>> {
         let values = self.column(name)?;
-        values
-            .iter()
-            .any(|value| !value.is_nan())
-            .then(|| values.to_vec())
+        let is_measured = values.iter().any(|value| !value.is_nan());
+        is_measured.then(|| values.to_vec())
     }
 
     /// A current, with its dropouts filled.
@@ -327,15 +358,8 @@ pub fn cell_error(
     let Position { line, column } = source.place(row_byte);
     let row = source.text.get(row_byte..).unwrap_or_default();
     let before = cells_before(row, index, mark);
-    InputError::at(
-        &source.path,
-        Position {
-            line,
-            column: column + before,
-        },
-        what,
-        mend,
-    )
+    let column = column + before;
+    InputError::at(&source.path, Position { line, column }, what, mend)
 }
 
 /// Number of characters of a row before its cell `index`.

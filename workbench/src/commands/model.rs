@@ -3,6 +3,7 @@ pub mod fit;
 mod flow_curve;
 mod linkage_table;
 pub mod new;
+mod number_table;
 
 use clap::Subcommand;
 

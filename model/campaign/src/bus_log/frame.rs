@@ -1,4 +1,6 @@
-//! A logged frame.
+//! A logged frame, and its receiver.
+
+use crate::CampaignError;
 
 /// Data bytes of the longest frame, of CAN FD.
 pub const MOST_BYTES: usize = 64;
@@ -59,4 +61,16 @@ pub struct Frame<'a> {
     pub data: &'a [u8],
     /// Its position in the log.
     pub byte: usize,
+}
+
+/// A receiver of frames.
+pub trait FrameSink {
+    /// Whether data frames with this identifier on this channel are wanted; others are not parsed.
+    fn wants(&mut self, channel: &str, id: Id) -> bool;
+
+    /// Receives a wanted frame.
+    ///
+    /// # Errors
+    /// The frame is not valid.
+    fn take(&mut self, frame: &Frame<'_>) -> Result<(), CampaignError>;
 }

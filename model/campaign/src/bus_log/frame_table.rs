@@ -11,8 +11,7 @@ use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
-use crate::bus_log::frame::{Frame, Id, MOST_BYTES};
-use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
 use crate::csv_log::dialect::{MARKS, rows};
 use crate::table::cell_error;
 
@@ -169,58 +168,4 @@ fn of_base64(text: &str) -> Option<Vec<u8>> {
         }
     }
     Some(bytes)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The frames of a table: time, identifier and data.
-    struct All(Vec<(f64, Id, Vec<u8>)>);
-
-    impl FrameSink for All {
-        fn wants(&mut self, _channel: &str, _id: Id) -> bool {
-            true
-        }
-
-        fn take(&mut self, frame: &Frame<'_>) -> Result<(), CampaignError> {
-            self.0.push((frame.time_s, frame.id, frame.data.to_vec()));
-            Ok(())
-        }
-    }
-
-    fn frames(text: &str) -> Result<Vec<(f64, Id, Vec<u8>)>, CampaignError> {
-        let source = SourceFile {
-            path: "a.csv".into(),
-            text: text.to_owned(),
-        };
-        let mut all = All(Vec::new());
-        read(&source, &mut all)?;
-        Ok(all.0)
-    }
-
-    #[test]
-    fn tables_of_three_loggers_have_the_same_frames() {
-        let edge = "TimestampEpoch;BusChannel;ID;IDE;DLC;DataLength;Dir;EDL;BRS;DataBytes\n\
-                    1.5;1;18FF4580;1;8;3;0;0;0;0102FF\n";
-        let savvy = "Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2,D3,D4,D5,D6,D7,D8\n\
-                     1500000,18FF4580,true,Rx,0,3,01,02,FF,\n";
-        let python = "timestamp,arbitration_id,extended,remote,error,dlc,data\n\
-                      1.5,0x18ff4580,1,0,0,3,AQL/\n1.6,0x100,0,1,0,0,\n";
-        for text in [edge, savvy, python] {
-            let data = vec![1, 2, 0xFF];
-            assert_eq!(
-                frames(text).unwrap(),
-                [(1.5, Id::Extended(0x18FF_4580), data)]
-            );
-        }
-        assert!(!is_one("time_s,lift_current_a\n0,1\n"));
-        for bad in [
-            edge.replace("0102FF", "0102F"),
-            edge.replace("1.5;", "x;"),
-            edge.replace("18FF4580", "FFFFFFFF"),
-        ] {
-            assert_eq!(frames(&bad).unwrap_err().place.unwrap().line, 2);
-        }
-    }
 }

@@ -6,8 +6,7 @@ use falcon_mdf::Mf4File;
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
-use crate::bus_log::frame::{Frame, Id};
-use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::frame::{Frame, FrameSink, Id};
 use crate::mdf_log::is_mdf;
 
 /// Whether a file contains frames, and no channels beside them.

@@ -12,7 +12,6 @@ mod candump;
 mod clock;
 mod description;
 mod frame;
-mod frame_sink;
 mod frame_table;
 mod line;
 mod listener;
@@ -28,9 +27,9 @@ pub use settings::BusSettings;
 pub use survey::{Signals, signals};
 
 use crate::CampaignError;
-use crate::series::{Series, values};
-use crate::table::{Cells, LIFT, LOWER, Samples, TIME, Table};
-use frame_sink::FrameSink;
+use crate::series::Series;
+use crate::table::{Cells, LIFT, LOWER, Table};
+use frame::FrameSink;
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use listener::Listener;
@@ -109,25 +108,14 @@ pub fn read(
     read_frames(source, format, &mut listener)?;
     let rows = required(source, &listener, settings, LIFT)?;
     required(source, &listener, settings, LOWER)?;
-    let within_s = rows.median_step_s() / 2.0;
-    let samples = |name, values| Samples {
-        name,
-        cell: 0,
-        values,
-    };
-    let mut columns = vec![samples(TIME, rows.times_s.clone())];
-    for (column, series) in listener.series() {
-        let values = values(column.name, series, &rows.times_s, within_s);
-        columns.push(samples(column.name, values));
-    }
-    let bytes = rows.bytes.clone();
+    let series = listener.series();
+    let series = series.map(|(column, series)| (column.name, 0, series));
     let cells = match format {
         Format::Candump | Format::Asc | Format::Table => Cells::OneALine,
         Format::Blf | Format::Mdf => Cells::Nowhere,
     };
-    let origin_s = listener.origin_s();
-    let table = Table::new(Arc::clone(source), columns, bytes, cells)?;
-    Ok(table.since(origin_s))
+    let table = Table::of_series(source, (0, rows), series, cells)?;
+    Ok(table.since(listener.origin_s()))
 }
 
 /// Passes the frames of a log to a sink.

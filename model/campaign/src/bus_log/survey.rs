@@ -6,10 +6,8 @@ use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
 use crate::bus_log::description::Description;
-use crate::bus_log::frame::{Frame, Id};
-use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::frame::{Frame, FrameSink, Id};
 use crate::bus_log::{Format, read_frames};
-use crate::scale::spelling;
 use crate::survey::LogColumn;
 use crate::table::COLUMNS;
 
@@ -71,12 +69,11 @@ pub fn signals(
             let fits = |column| description.signal(message, &signal.name, column).is_ok();
             let fault = description.why_not(message, signal);
             if fault.is_some() || COLUMNS.iter().any(fits) {
+                let name = format!("{}.{}", message.name, signal.name);
                 columns.push(LogColumn {
-                    name: format!("{}.{}", message.name, signal.name),
-                    unit: Some(spelling(&signal.unit).to_owned()),
                     comment: description.comment(message, &signal.name).to_owned(),
                     fault,
-                    ..LogColumn::default()
+                    ..LogColumn::new(&name, Some(&signal.unit))
                 });
             }
         }

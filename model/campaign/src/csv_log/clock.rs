@@ -2,6 +2,7 @@
 
 use chrono::{DateTime, Datelike as _, NaiveDate, NaiveTime, Timelike as _};
 
+use crate::csv_log::dialect::Decimals;
 use crate::scale::Scale;
 
 /// Seconds per day.
@@ -117,16 +118,22 @@ fn guessed_unit_s(number: f64) -> f64 {
 
 /// A number with a decimal point or comma.
 fn number(cell: &str) -> Option<f64> {
-    let is_number = |text: &str| {
-        let number: f64 = text.parse().ok()?;
-        number.is_finite().then_some(number)
-    };
-    is_number(cell).or_else(|| is_number(&cell.replacen(',', ".", 1)))
+    let number = Decimals::ANY.number(cell);
+    number.filter(|number| number.is_finite())
 }
 
 /// Whether a cell contains a date or a time of day.
 pub fn is_clock(cell: &str) -> bool {
-    let is_of = |order| parse(cell, order).is_some();
+    is_in_an_order(cell, |order| parse(cell, order).is_some())
+}
+
+/// Whether a cell contains a date without a time of day.
+pub fn is_date(cell: &str) -> bool {
+    is_in_an_order(cell, |order| day_of(cell, order).is_some())
+}
+
+/// Whether a cell is no number, and `is_of` an order of day and month.
+fn is_in_an_order(cell: &str, is_of: impl Fn(DateOrder) -> bool) -> bool {
     number(cell).is_none() && (is_of(DateOrder::DayFirst) || is_of(DateOrder::MonthFirst))
 }
 
@@ -230,12 +237,6 @@ fn offset_s(text: &str) -> Option<f64> {
     Some(f64::from(read.offset().local_minus_utc()))
 }
 
-/// Whether a cell contains a date without a time of day.
-pub fn is_date(cell: &str) -> bool {
-    let is_of = |order| day_of(cell, order).is_some();
-    number(cell).is_none() && (is_of(DateOrder::DayFirst) || is_of(DateOrder::MonthFirst))
-}
-
 /// Days from 1970-01-01 to a date: `2026-11-21`, `20261121`, `21.11.2026`, `11/21/2026`, `21-Nov-2026`, `Nov 21, 2026`.
 fn day_of(text: &str, order: DateOrder) -> Option<f64> {
     const BY_NAME: [&str; 4] = ["%d %b %Y", "%b %d %Y", "%a %d %b %Y", "%a %b %d %Y"];
@@ -299,36 +300,33 @@ mod tests {
 
     #[test]
     fn dates_and_clocks_count_from_the_first() {
-        near(
-            &["2026-11-21T10:00:00.250Z", "2026-11-21T10:00:01Z"],
-            &[0.0, 0.75],
-        );
-        near(
-            &["2026-12-31 23:59:59,5+01:00", "2027-01-01 00:00:00+01:00"],
-            &[0.0, 0.5],
-        );
-        near(
-            &["2026-10-25T02:59:59+02:00", "2026-10-25T02:00:00+01:00"],
-            &[0.0, 1.0],
-        );
-        near(&["28.02.2028 23:59:59", "29.02.2028 00:00:01"], &[0.0, 2.0]);
-        near(
-            &["11/21/2026 11:59:59 AM", "11/21/2026 12:00:00 PM"],
-            &[0.0, 1.0],
-        );
-        for [first, second] in [
-            ["21-Nov-2026 23:59:59.750", "22-Nov-2026 00:00:00.250"],
-            ["21/11/2026 23:59:59:750", "22/11/2026 00:00:00:250"],
-            ["12/11/2026 23:59:59.750", "12/12/2026 00:00:00.250"],
-            ["12/11/2026 23:59:59.750", "13/11/2026 00:00:00.250"],
-            ["20261121T23:59:59,75", "20261122T00:00:00,25"],
-            [
-                "Sat, 21 Nov 2026 23:59:59.75",
-                "Sun, 22 Nov 2026 00:00:00.25",
-            ],
-            ["21.11.26 23:59:59,75", "22.11.26 00:00:00,25"],
+        for (first, second, step_s) in [
+            ("2026-11-21T10:00:00.250Z", "2026-11-21T10:00:01Z", 0.75),
+            (
+                "2026-12-31 23:59:59,5+01:00",
+                "2027-01-01 00:00:00+01:00",
+                0.5,
+            ),
+            (
+                "2026-10-25T02:59:59+02:00",
+                "2026-10-25T02:00:00+01:00",
+                1.0,
+            ),
+            ("28.02.2028 23:59:59", "29.02.2028 00:00:01", 2.0),
+            ("11/21/2026 11:59:59 AM", "11/21/2026 12:00:00 PM", 1.0),
+            ("21-Nov-2026 23:59:59.750", "22-Nov-2026 00:00:00.250", 0.5),
+            ("21/11/2026 23:59:59:750", "22/11/2026 00:00:00:250", 0.5),
+            ("12/11/2026 23:59:59.750", "12/12/2026 00:00:00.250", 0.5),
+            ("12/11/2026 23:59:59.750", "13/11/2026 00:00:00.250", 0.5),
+            ("20261121T23:59:59,75", "20261122T00:00:00,25", 0.5),
+            (
+                "Sat, 21 Nov 2026 23:59:59",
+                "Sun, 22 Nov 2026 00:00:00.5",
+                1.5,
+            ),
+            ("21.11.26 23:59:59,75", "22.11.26 00:00:00,25", 0.5),
         ] {
-            near(&[first, second], &[0.0, 0.5]);
+            near(&[first, second], &[0.0, step_s]);
         }
         near(
             &["23:59:59.9", "00:00:00.1", "00:00:01.1"],
@@ -338,45 +336,40 @@ mod tests {
 
     #[test]
     fn the_dates_tell_the_order_of_day_and_month() {
-        let of = |cells: &[&str]| DateOrder::of(cells.iter().copied());
         use DateOrder::{DayFirst, MonthFirst};
-        assert_eq!(
-            of(&["12/11/2026 1:00:00", "13/11/2026 1:00:00"]),
-            (DayFirst, true)
-        );
-        assert_eq!(
-            of(&["11/12/2026 1:00:00", "11/13/2026 1:00:00"]),
-            (MonthFirst, true)
-        );
-        assert_eq!(
-            of(&["11/11/2026 1:00:00", "12/11/2026 1:00:00"]),
-            (DayFirst, true)
-        );
-        assert_eq!(
-            of(&["11/11/2026 1:00:00", "11/12/2026 1:00:00"]),
-            (MonthFirst, true)
-        );
-        assert!(
-            !of(&["12/11/2026 1:00:00", "12/11/2026 2:00:00"]).1,
-            "no matter"
-        );
+        for (first, second, order) in [
+            ("12/11/2026 1:00:00", "13/11/2026 1:00:00", (DayFirst, true)),
+            (
+                "11/12/2026 1:00:00",
+                "11/13/2026 1:00:00",
+                (MonthFirst, true),
+            ),
+            ("11/11/2026 1:00:00", "12/11/2026 1:00:00", (DayFirst, true)),
+            (
+                "11/11/2026 1:00:00",
+                "11/12/2026 1:00:00",
+                (MonthFirst, true),
+            ),
+            // Of one date either order is right.
+            (
+                "12/11/2026 1:00:00",
+                "12/11/2026 2:00:00",
+                (DayFirst, false),
+            ),
+        ] {
+            assert_eq!(
+                DateOrder::of([first, second].into_iter()),
+                order,
+                "{second}"
+            );
+        }
         assert!(is_date("21.11.2026") && is_date("11/21/2026") && !is_date("10:00:00"));
     }
 
     #[test]
     fn what_is_no_time_is_none() {
-        for cell in [
-            "",
-            "x",
-            "12:",
-            "25:00:00",
-            "1:2:3:4",
-            "2026-13-01 1:00:00",
-            "nan",
-            "ä:ö",
-            "+",
-            "10:00:00+é1",
-        ] {
+        let cells = "|x|12:|25:00:00|1:2:3:4|2026-13-01 1:00:00|nan|ä:ö|+|10:00:00+é1";
+        for cell in cells.split('|') {
             assert_eq!(read(&[cell]), [None], "{cell}");
         }
         assert_eq!(read(&["10:00:00", "5"]), [Some(0.0), None]);

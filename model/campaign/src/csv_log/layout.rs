@@ -7,9 +7,8 @@ use crate::CampaignError;
 use crate::csv_log::clock::{DateOrder, Times, is_clock, is_date};
 use crate::csv_log::dialect::{Decimals, Header, is_missing, is_sample, rows};
 use crate::csv_log::lvm::{self, Steps};
-use crate::scale::spelling;
 use crate::table::cell_error;
-use crate::time_base::{Seen, bases, is_time_name, is_unit_of_time, notes, rises};
+use crate::time_base::{Seen, bases, is_time_name, notes, rises};
 
 /// Number of rows that are examined.
 const EXAMINED_ROWS: usize = 1_000;
@@ -205,7 +204,6 @@ impl<'s> Layout<'s> {
 
     fn seen(&self, column: usize, first: &[StringRecord]) -> Seen {
         let cell = &self.header.cells[column];
-        let unit = cell.unit.as_deref().map(spelling);
         let cells = first.iter().filter_map(|row| row.get(column + self.shift));
         let filled: Vec<&str> = cells.filter(|cell| !is_missing(cell)).collect();
         let mut times = Times::new(None, self.orders[column]);
@@ -217,12 +215,8 @@ impl<'s> Layout<'s> {
             })
             .collect();
         Seen {
-            name: cell.name.clone(),
-            is_in_time: unit.is_some_and(is_unit_of_time),
-            has_unit: unit.is_some(),
             is_clock: filled.first().is_some_and(|text| is_clock(text)),
-            samples: values.len(),
-            rises: rises(&values),
+            ..Seen::new(&cell.name, cell.unit.as_deref(), &values)
         }
     }
 
@@ -268,11 +262,8 @@ impl<'s> Layout<'s> {
 
     /// The fault of a row that does not have the cells of the header.
     fn misfit(&self, byte: usize, record: &StringRecord) -> Option<CampaignError> {
-        let named = self
-            .header
-            .cells
-            .iter()
-            .rposition(|cell| !cell.text.is_empty());
+        let mut cells = self.header.cells.iter();
+        let named = cells.rposition(|cell| !cell.text.is_empty());
         let least = named.map_or(0, |last| last + 1) + self.shift;
         let filled = (0..record.len()).rfind(|&cell| !record[cell].is_empty());
         let most = self.header.width + self.shift;
@@ -296,29 +287,14 @@ impl<'s> Layout<'s> {
 
     /// A fault of a cell of a row.
     pub fn fault(&self, byte: usize, column: usize, what: String, mend: &str) -> CampaignError {
-        cell_error(
-            self.source,
-            byte,
-            (self.cell(column), self.header.mark.into()),
-            what,
-            mend,
-        )
+        let cell = (self.cell(column), self.header.mark.into());
+        cell_error(self.source, byte, cell, what, mend)
     }
 
     /// A fault of a name in the header.
-    pub fn fault_of_name(
-        &self,
-        column: usize,
-        what: String,
-        mend: impl Into<String>,
-    ) -> CampaignError {
-        cell_error(
-            self.source,
-            self.header.byte,
-            (column, self.header.mark.into()),
-            what,
-            mend,
-        )
+    pub fn fault_of_name(&self, column: usize, what: String, mend: &str) -> CampaignError {
+        let cell = (column, self.header.mark.into());
+        cell_error(self.source, self.header.byte, cell, what, mend)
     }
 
     /// Index of the cell of a column in a row.

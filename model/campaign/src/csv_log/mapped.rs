@@ -7,13 +7,13 @@ use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 
 use crate::CampaignError;
-use crate::columns::{ColumnSettings, Source, offer_columns};
+use crate::columns::{ColumnSettings, Source, unassigned};
 use crate::csv_log::clock::Times;
 use crate::csv_log::dialect::is_missing;
 use crate::csv_log::layout::{Layout, Row};
 use crate::scale::{Scale, is_time};
-use crate::series::{Series, median_step_s, values};
-use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
+use crate::series::Series;
+use crate::table::{Cells, Column, LIFT, TIMES, Table};
 use crate::time_base::{self, base_of};
 
 /// A mapped column.
@@ -83,16 +83,11 @@ fn index_of(
         (Some(first), Some(second)) => {
             let what = format!("column {} is duplicated", quote(&wanted.name));
             let mend = format!("assign {} or {}", cells[first].name, cells[second].name);
-            Err(layout.fault_of_name(second, what, mend))
+            Err(layout.fault_of_name(second, what, &mend))
         }
         (None, _) if !wanted.is_required => Ok(None),
         (None, _) => {
-            let what = format!(
-                "column {} does not exist; [columns] assigns it to {}",
-                quote(&wanted.name),
-                wanted.column.name
-            );
-            let mend = offer_columns(&wanted.name, &layout.header.names());
+            let (what, mend) = wanted.missing("column", &layout.header.names());
             Err(source.error_at(layout.header.byte, what, mend))
         }
     }
@@ -111,8 +106,7 @@ impl<'a> Reader<'a> {
         }
         let time = found.iter().find(|(wanted, _)| is_time(wanted.column));
         let &(time, main) = time.ok_or_else(|| {
-            let what = format!("no column is assigned to {TIME}");
-            let mend = format!("assign it under [columns]: {TIME} = \"Name:s\"");
+            let (what, mend) = unassigned("column", &TIMES);
             source.error_at(layout.header.byte, what, mend)
         })?;
         let unit = |index: usize| layout.header.cells[index].unit.as_deref();
@@ -132,7 +126,7 @@ impl<'a> Reader<'a> {
             .filter(|(wanted, _)| !is_time(wanted.column))
         {
             let scale = wanted.scale(unit(index));
-            let scale = scale.map_err(|(what, mend)| layout.fault_of_name(index, what, mend))?;
+            let scale = scale.map_err(|(what, mend)| layout.fault_of_name(index, what, &mend))?;
             let base = base_of(&layout.bases, index, main, lift);
             let known = times.iter().position(|times| times.index == base);
             let place = known.unwrap_or(times.len());
@@ -193,22 +187,15 @@ impl<'a> Reader<'a> {
     /// The rows of the times of the lift current, to which samples at other times are moved.
     fn table(self, source: &Arc<SourceFile>) -> Result<Table, CampaignError> {
         let layout = self.layout;
-        let lift = self
-            .columns
-            .iter()
-            .find(|column| column.column.name == LIFT);
+        let mut columns = self.columns.iter();
+        let lift = columns.find(|column| column.column.name == LIFT);
         let main = lift.map_or(0, |lift| lift.times);
         let rows = &self.times[main];
         if rows.bytes.is_empty() {
             let mend = "log the run again";
             return Err(source.error("contains a header but no samples", mend));
         }
-        let within_s = median_step_s(&rows.times_s) / 2.0;
-        let mut columns = vec![Samples {
-            name: TIME,
-            cell: layout.cell(rows.index),
-            values: rows.times_s.clone(),
-        }];
+        let mut columns = Vec::new();
         for taken in &self.columns {
             let times = &self.times[taken.times];
             if !taken.is_own && taken.values.iter().all(|value| value.is_nan()) {
@@ -216,36 +203,33 @@ impl<'a> Reader<'a> {
                 let mend = "assign another column, or delete its line under [columns]";
                 return Err(layout.fault_of_name(taken.index, what, mend));
             }
-            let values = match taken.times == main {
-                true => taken.values.clone(),
-                false => {
-                    times.check(layout)?;
-                    let later_s = times.times.later_than_s(&rows.times);
-                    let series = Series {
-                        times_s: times
-                            .times_s
-                            .iter()
-                            .map(|time_s| time_s + later_s)
-                            .collect(),
-                        values: taken.values.clone(),
-                        bytes: times.bytes.clone(),
-                    };
-                    values(taken.column.name, &series, &rows.times_s, within_s)
-                }
-            };
-            columns.push(Samples {
-                name: taken.column.name,
-                cell: layout.cell(taken.index),
-                values,
-            });
+            if taken.times != main {
+                times.check(layout)?;
+            }
+            let later_s = times.times.later_than_s(&rows.times);
+            let series = times.series(later_s, taken.values.clone());
+            columns.push((taken.column.name, layout.cell(taken.index), series));
         }
+        let series = columns.iter();
+        let series = series.map(|(name, cell, series)| (*name, *cell, series));
         let cells = Cells::Between(layout.header.mark.into());
-        let table = Table::new(Arc::clone(source), columns, rows.bytes.clone(), cells)?;
+        let own = rows.series(0.0, Vec::new());
+        let table = Table::of_series(source, (layout.cell(rows.index), &own), series, cells)?;
         Ok(table.since(rows.times.origin_s()))
     }
 }
 
 impl TimeColumn {
+    /// Values at these times, later by `later_s`.
+    fn series(&self, later_s: f64, values: Vec<f64>) -> Series {
+        let times_s = self.times_s.iter().map(|time_s| time_s + later_s);
+        Series {
+            times_s: times_s.collect(),
+            values,
+            bytes: self.bytes.clone(),
+        }
+    }
+
     /// Rejects times that do not rise.
     fn check(&self, layout: &Layout<'_>) -> Result<(), CampaignError> {
         let pairs = self.times_s.windows(2);
@@ -279,28 +263,17 @@ fn value(
         return Err((what, mend.to_owned()));
     };
     let value = taken.scale.apply(number, linkage);
-    if column.range.contains(&value) {
-        return Ok(value);
-    }
-    let range = format!(
-        "the range is {} to {}",
-        column.range.start(),
-        column.range.end()
-    );
     let empty = "leave the cell of a dropout empty";
-    Err(match taken.is_own {
-        true => (
-            format!("{value} in column {name} is out of range"),
-            format!("{range}; {empty}"),
-        ),
-        false => (
-            format!(
-                "{} in column {} would be {} = {value}",
-                quote(cell),
-                quote(name),
-                column.name
+    column
+        .checked(value)
+        .map_err(|(would_be, range)| match taken.is_own {
+            true => (
+                format!("{value} in column {name} is out of range"),
+                format!("{range}; {empty}"),
             ),
-            format!("{range}: check the unit under [columns], and {empty}"),
-        ),
-    })
+            false => (
+                format!("{} in column {} {would_be}", quote(cell), quote(name)),
+                format!("{range}: check the unit under [columns], and {empty}"),
+            ),
+        })
 }

@@ -3,6 +3,7 @@
 mod descriptions;
 mod faults;
 mod logs;
+mod tables;
 
 use std::fmt::Write as _;
 

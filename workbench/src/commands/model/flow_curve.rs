@@ -7,7 +7,7 @@ use hitch_input::source_file::SourceFile;
 use hitch_plant::units::M3_S_PER_LPM;
 use hitch_plant::{ValveCurve, ValveCurveError};
 
-use hitch_campaign::number_table::{NumberTable, Wanted};
+use super::number_table::{NumberTable, Wanted};
 
 const EXAMPLE: &str = "Current [A];Flow [l/min] or current_a,flow_lpm";
 
