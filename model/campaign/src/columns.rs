@@ -58,10 +58,8 @@ impl Source {
     pub fn parse(key: &str, text: &str) -> Result<Self, (String, String)> {
         let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
         let Some(column) = column(key) else {
-            return Err((
-                unknown_name("channel", key, &names),
-                offer_names(key, &names),
-            ));
+            let what = unknown_name("channel", key, &names);
+            return Err((what, offer_names(key, &names)));
         };
         let (text, points) = points(text);
         let (name, unit) = match text.rsplit_once(':') {

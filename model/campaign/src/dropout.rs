@@ -39,22 +39,19 @@ pub fn bridge(time_s: &[f64], current_a: &mut [f64]) -> Result<(), Gap> {
     Ok(())
 }
 
-/// Fills the samples from `first` on, between the known samples `before` and `after`.
+/// Fills the samples from `sample` on, between the known samples `before` and `after`.
 fn fill(
     time_s: &[f64],
     current_a: &mut [f64],
-    first: usize,
+    sample: usize,
     before: Option<usize>,
     after: Option<usize>,
 ) -> Result<(), Gap> {
-    let gap = |duration_s| Gap {
-        sample: first,
-        duration_s,
-    };
+    let gap = |duration_s| Gap { sample, duration_s };
     let nearest = before.or(after).zip(after.or(before));
     let (from, to) = nearest.ok_or(gap(f64::INFINITY))?;
     let end = after.unwrap_or(current_a.len());
-    let duration_s = time_s[after.unwrap_or(end - 1)] - time_s[before.unwrap_or(first)];
+    let duration_s = time_s[after.unwrap_or(end - 1)] - time_s[before.unwrap_or(sample)];
     let steady = from != to && (current_a[to] - current_a[from]).abs() < STEADY_WITHIN_A;
     if duration_s > if steady { STEADY_GAP_S } else { SHORT_GAP_S } {
         return Err(gap(duration_s));
@@ -64,7 +61,7 @@ fn fill(
         true => 0.0,
         false => (current_a[to] - start_a) / (time_s[to] - time_s[from]),
     };
-    for i in first..end {
+    for i in sample..end {
         current_a[i] = start_a + slope * (time_s[i] - time_s[from]);
     }
     Ok(())

@@ -139,7 +139,15 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`].
     pub fn of_manifest(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
-        manifest::read(dir, &of_text(dir, text), linkage)
+        manifest::read(dir, &of_text(dir, text), linkage, table::LONGEST_STEP_S)
+    }
+
+    /// The same, whose logs are not yet cut into runs: their clocks may jump ahead.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn uncut(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
+        manifest::read(dir, &of_text(dir, text), linkage, f64::INFINITY)
     }
 
     /// Whether the log of each run of a manifest's text continues that of the run before it: the same columns, and times
@@ -188,6 +196,7 @@ impl Run {
             cut::Cut::NONE,
             bench,
             Some(oil_temperature_c),
+            table::LONGEST_STEP_S,
         )
     }
 

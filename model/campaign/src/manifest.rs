@@ -12,7 +12,7 @@ use crate::columns::ColumnSettings;
 use crate::cut::Cut;
 use crate::run_log::Settings;
 use crate::series::median_step_s;
-use crate::table::Table;
+use crate::table::{LONGEST_STEP_S, Table};
 use crate::{Bench, Campaign, CampaignError, Noise, Run, run_log};
 
 /// Key of the files in which a recording continues.
@@ -32,7 +32,8 @@ const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 
 /// Reads the folder of a campaign with a hitch of this linkage.
 pub fn load(dir: &Path, linkage: &Linkage) -> Result<Campaign, CampaignError> {
-    read(dir, &SourceFile::read(&manifest_path(dir)?)?, linkage)
+    let source = SourceFile::read(&manifest_path(dir)?)?;
+    read(dir, &source, linkage, LONGEST_STEP_S)
 }
 
 /// The logs and the DBC that the manifest in a folder refers to, in any folder.
@@ -51,8 +52,13 @@ pub fn files(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
     Ok(files)
 }
 
-/// Reads the campaign of a manifest located in `dir`.
-pub fn read(dir: &Path, source: &SourceFile, linkage: &Linkage) -> Result<Campaign, CampaignError> {
+/// Reads the campaign of a manifest located in `dir`, whose samples are at most `longest_step_s` apart.
+pub fn read(
+    dir: &Path,
+    source: &SourceFile,
+    linkage: &Linkage,
+    longest_step_s: f64,
+) -> Result<Campaign, CampaignError> {
     let top = TomlTable::parse(source)?;
     check_format(&top)?;
     top.only(&[
@@ -79,6 +85,7 @@ pub fn read(dir: &Path, source: &SourceFile, linkage: &Linkage) -> Result<Campai
         bus: Some(&bus),
         columns: columns.as_ref(),
         linkage,
+        longest_step_s,
     };
     let runs = runs(dir, &top, settings)?;
     // The rate of the first run's time stamps.
@@ -197,7 +204,8 @@ fn runs(
                 joined(&paths, settings)?
             }
         };
-        let run = run_log::run(&log, called(file, &files), cut, bench, oil_temperature_c)?;
+        let (name, step_s) = (called(file, &files), settings.longest_step_s);
+        let run = run_log::run(&log, name, cut, bench, oil_temperature_c, step_s)?;
         run_log::check_usable(&paths[0], &run)?;
         last = Some((paths, own, log));
         runs.push(run);
@@ -245,6 +253,7 @@ pub fn continued(
             bus: Some(&bus),
             columns: own.as_ref(),
             linkage,
+            ..Settings::default()
         };
         let log = joined(&logs_of(dir, &table)?, settings)?;
         let is_next =
@@ -336,9 +345,6 @@ fn belongs_elsewhere(table: &TomlTable<'_>, key: &str, bench: &str) -> Result<()
         return Ok(());
     }
     let what = format!("{key} is valid only for a run on the {bench} bench");
-    Err(table.error_at(
-        key,
-        what,
-        format!("delete the line, or write bench = \"{bench}\""),
-    ))
+    let mend = format!("delete the line, or write bench = \"{bench}\"");
+    Err(table.error_at(key, what, mend))
 }

@@ -13,7 +13,7 @@ use crate::series::{Series, median_step_s, values};
 use crate::{CampaignError, Run, dropout};
 
 /// Longest step between two samples, s: the valve motion within a longer one is unknown.
-const LONGEST_STEP_S: f64 = 2.0;
+pub const LONGEST_STEP_S: f64 = 2.0;
 /// Range of time stamps, s: beyond it, rounding errors affect the step between samples.
 const TIME_S: RangeInclusive<f64> = -1e7..=1e10;
 /// Range of currents, A.
@@ -288,10 +288,9 @@ impl Table {
         match dropout::bridge(time_s, &mut current_a) {
             Ok(()) => Ok(current_a),
             Err(gap) => {
-                let what = if gap.duration_s.is_finite() {
-                    format!("{name} is missing for {:.2} s", gap.duration_s)
-                } else {
-                    format!("{name} has no values")
+                let what = match gap.duration_s.is_finite() {
+                    true => format!("{name} is missing for {:.2} s", gap.duration_s),
+                    false => format!("{name} has no values"),
                 };
                 let mend = "the currents are inputs of the model: log the run again, or cut it before the gap";
                 Err(self.error_in(gap.sample, name, what, mend))
@@ -302,15 +301,15 @@ impl Table {
     /// Rejects times that do not increase from row to row.
     ///
     /// # Errors
-    /// The first row that is not later than the previous one, or too much later.
-    pub fn check_time(&self, time_s: &[f64]) -> Result<(), CampaignError> {
+    /// The first row that is not later than the previous one, or later by more than `longest_s`.
+    pub fn check_time(&self, time_s: &[f64], longest_s: f64) -> Result<(), CampaignError> {
         for (sample, pair) in time_s.windows(2).enumerate() {
             let (before_s, now_s) = (pair[0], pair[1]);
             let fault = if now_s < before_s {
                 "goes back"
             } else if now_s == before_s {
                 "stands still"
-            } else if now_s - before_s > LONGEST_STEP_S {
+            } else if now_s - before_s > longest_s {
                 "jumps"
             } else {
                 continue;

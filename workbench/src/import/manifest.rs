@@ -40,7 +40,7 @@ pub fn campaign(
 ) -> Result<(String, Campaign, Vec<String>), Error> {
     let mut notes = Vec::new();
     let logs = joined(folder, logs, can, linkage, &mut notes)?;
-    let whole = Campaign::of_manifest(folder, &text(name, can, &logs), linkage)?;
+    let whole = Campaign::uncut(folder, &text(name, can, &logs), linkage)?;
     let mut useful = Vec::with_capacity(logs.len());
     for (mut log, run) in logs.into_iter().zip(&whole.runs) {
         let found = cuts(run);
@@ -150,4 +150,63 @@ pub fn path_from(folder: &Path, log: &Path) -> String {
         .unwrap_or_else(|_| folder.to_path_buf());
     let path = full.strip_prefix(&folder).unwrap_or(&full);
     path.to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A log of two lifts, between which the clock jumps by `jump_s`.
+    fn two_lifts(jump_s: f64) -> String {
+        let row = |index: u32| {
+            let time_s = 0.02 * f64::from(index);
+            let logged_s = time_s + if index < 500 { 0.0 } else { jump_s };
+            let lift_s = time_s % 10.0;
+            let current_a = if (4.0..6.0).contains(&lift_s) {
+                1.5
+            } else {
+                0.0
+            };
+            let angle_deg = 50.0 + 20.0 * (lift_s.clamp(4.0, 6.0) - 4.0);
+            format!("{logged_s},{current_a},0,{angle_deg}\n")
+        };
+        let rows: String = (0..1000).map(row).collect();
+        format!("time_s,lift_current_a,lower_current_a,rocker_angle_deg\n{rows}")
+    }
+
+    #[test]
+    fn a_log_is_split_where_its_clock_jumps_ahead() {
+        let folder = tempfile::tempdir().unwrap();
+        let imported = |jump_s: f64| {
+            std::fs::write(folder.path().join("a.csv"), two_lifts(jump_s)).unwrap();
+            let log = Log {
+                file: "a.csv".to_owned(),
+                then: Vec::new(),
+                mapping: None,
+                conditions: Conditions::Hitch { load_kg: 50.0 },
+                cuts: Vec::new(),
+            };
+            let nominal = hitch_model_file::nominal();
+            campaign(folder.path(), "a", None, vec![log], nominal.linkage())
+        };
+        for jump_s in [3.0, 3_600.0] {
+            let (_, campaign, notes) = imported(jump_s).unwrap_or_else(|error| panic!("{error}"));
+            let lasts_s: Vec<f64> = campaign
+                .runs
+                .iter()
+                .map(hitch_campaign::Run::duration_s)
+                .collect();
+            assert_eq!(lasts_s.len(), 2, "{notes:?}");
+            assert!(
+                lasts_s.iter().all(|lasts_s| (lasts_s - 9.98).abs() < 1e-6),
+                "{lasts_s:?}"
+            );
+            assert!(
+                notes[0].contains("its clock jumps from 9.98 s"),
+                "{notes:?}"
+            );
+        }
+        let said = imported(-5.0).unwrap_err().to_string();
+        assert!(said.contains("time goes back"), "{said}");
+    }
 }

@@ -42,6 +42,7 @@ impl Frames {
             let names: Vec<String> = all.next()?.1.iter().map(str::to_lowercase).collect();
             let find = |known: &[&str]| names.iter().position(|name| known.contains(&&**name));
             let bytes = find(&["d1"]);
+            let others = [find(&["remote"]), find(&["error"])];
             let time = find(&["timestampepoch", "timestamp", "time stamp"])?;
             Some(Self {
                 mark,
@@ -53,10 +54,7 @@ impl Frames {
                 is_base64: find(&["arbitration_id"]).is_some(),
                 channel: find(&["buschannel", "bus"]),
                 extended: find(&["ide", "extended"]),
-                others: [find(&["remote"]), find(&["error"])]
-                    .into_iter()
-                    .flatten()
-                    .collect(),
+                others: others.into_iter().flatten().collect(),
                 begin: all.next().map_or(text.len(), |(byte, _)| byte),
             })
         })
@@ -121,11 +119,8 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), Campaig
         }
         let time: Option<f64> = cell(frames.time).parse().ok();
         let time = time.filter(|time| time.is_finite()).ok_or_else(|| {
-            fault(
-                frames.time,
-                "is not a time",
-                "write it as a number of seconds",
-            )
+            let mend = "write it as a number of seconds";
+            fault(frames.time, "is not a time", mend)
         })?;
         let data = frames.data(&row).ok_or_else(|| {
             let mend = "each byte has two hexadecimal digits; delete the row if it is truncated";
