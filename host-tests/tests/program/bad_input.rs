@@ -29,7 +29,7 @@ fn every_reader_of_campaigns_refuses_a_bad_one() {
         refused(
             dir.path(),
             arguments,
-            "c/lift.csv:2:14: \"NaN\" in column pump_pressure_bar is not finite",
+            "c/lift.csv:2:14: \"NaN\" in column \"pump_pressure_bar\" is not a number",
         );
     }
 }
@@ -64,11 +64,11 @@ fn bad_logs_are_refused_by_line_and_column() {
         ),
         (
             log.replacen(",16.0,", ",sixteen,", 1),
-            "c/lift.csv:2:18: \"sixteen\" in column cylinder_pressure_bar",
+            "c/lift.csv:2:18: \"sixteen\" in column \"cylinder_pressure_bar\"",
         ),
         (
             log.replacen(",16.0,", ",inf,", 1),
-            "c/lift.csv:2:18: \"inf\" in column cylinder_pressure_bar is not finite",
+            "c/lift.csv:2:18: \"inf\" in column \"cylinder_pressure_bar\" is not a number",
         ),
         (
             log.replacen("rocker_angle_deg", "rocker_angle_rad", 1),

@@ -108,6 +108,12 @@ fn the_document_of_the_paper_follows_its_schema() {
 }
 
 #[test]
+fn the_document_of_the_effects_follows_its_schema() {
+    assert_valid(Path::new("."), "effects", "");
+    assert_valid(Path::new("."), "effects", "coulomb-friction");
+}
+
+#[test]
 fn a_command_without_a_document_is_refused() {
     let list = run(Path::new("."), &["schema"]);
     let list = String::from_utf8(list.stdout).unwrap();
@@ -115,11 +121,11 @@ fn a_command_without_a_document_is_refused() {
         list.contains("explain\n") && list.contains("model fit\n"),
         "{list}"
     );
-    let refused = run(Path::new("."), &["schema", "effects"]);
+    let refused = run(Path::new("."), &["schema", "import"]);
     let said = String::from_utf8(refused.stderr).unwrap();
     assert_eq!(refused.status.code(), Some(2));
     assert!(
-        said.contains("\"effects\"") && said.contains("explain"),
+        said.contains("\"import\"") && said.contains("explain"),
         "{said}"
     );
 }

@@ -9,11 +9,10 @@ use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 
 use crate::CampaignError;
-use crate::columns::{ColumnSettings, Source, offer_columns};
-use crate::scale::{Scale, spelling};
-use crate::series::{Series, values};
+use crate::columns::{ColumnSettings, Source, unassigned};
+use crate::series::Series;
 use crate::survey::{LogColumn, without_group};
-use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
+use crate::table::{Cells, LIFT, LIFTS, TIME, Table};
 
 /// A channel of a log.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -72,29 +71,12 @@ pub fn read(
     }
     let rows = taken.iter().find(|(name, _)| *name == LIFT);
     let Some((_, rows)) = rows else {
-        let what = format!("no channel is assigned to {LIFT}");
-        let mend = format!("assign it under [columns]: {LIFT} = \"Name:A\"");
+        let (what, mend) = unassigned("channel", &LIFTS);
         return Err(file.source().error(what, mend));
     };
-    let (times_s, within_s) = (rows.times_s.clone(), rows.median_step_s() / 2.0);
-    let samples = |name, values| Samples {
-        name,
-        cell: 0,
-        values,
-    };
-    let mut columns = vec![samples(TIME, times_s.clone())];
-    columns.extend(
-        taken
-            .iter()
-            .map(|(name, series)| samples(name, values(name, series, &times_s, within_s))),
-    );
-    let bytes = vec![0; times_s.len()];
-    Table::new(
-        Arc::new(file.source().clone()),
-        columns,
-        bytes,
-        Cells::Nowhere,
-    )
+    let source = Arc::new(file.source().clone());
+    let series = taken.iter().map(|(name, series)| (*name, 0, series));
+    Table::of_series(&source, (0, rows), series, Cells::Nowhere)
 }
 
 /// The channels with samples.
@@ -110,14 +92,11 @@ pub fn survey(file: &dyn ChannelFile) -> Vec<LogColumn> {
             Err(fault) => (Series::default(), Some(fault)),
         };
         if fault.is_some() || !series.values.is_empty() {
-            let unit = channel.unit.as_deref();
             columns.push(LogColumn {
-                name: channel.name.clone(),
-                unit: unit.map(|unit| spelling(unit).to_owned()),
                 lasts_s: lasts(&series.times_s),
                 values: series.values,
                 fault,
-                ..LogColumn::default()
+                ..LogColumn::new(&channel.name, channel.unit.as_deref())
             });
         }
     }
@@ -167,13 +146,8 @@ fn find(file: &dyn ChannelFile, wanted: &Source) -> Result<Option<usize>, Campai
 pub fn missing(file: &dyn ChannelFile, wanted: &Source) -> CampaignError {
     let channels = file.channels().iter();
     let names: Vec<&str> = channels.map(|channel| channel.name.as_str()).collect();
-    let what = format!(
-        "channel {} does not exist; [columns] assigns it to {}",
-        quote(&wanted.name),
-        wanted.column.name
-    );
-    file.source()
-        .error(what, offer_columns(&wanted.name, &names))
+    let (what, mend) = wanted.missing("channel", &names);
+    file.source().error(what, mend)
 }
 
 fn scaled_series(
@@ -191,32 +165,19 @@ fn scaled_series(
     }
     let scale = wanted.scale(channel.unit.as_deref()).map_err(fault)?;
     let mut series = file.series(index, time, lift)?;
-    for index in 0..series.values.len() {
-        let value = scaled(scale, linkage, series.values[index], wanted.column);
-        series.values[index] = value.map_err(|value| {
-            let what = format!(
-                "{} of channel {} at {:.3} s would be {} = {value}",
-                series.values[index],
-                quote(&channel.name),
-                series.times_s[index],
-                wanted.column.name
-            );
-            let (low, high) = (wanted.column.range.start(), wanted.column.range.end());
-            let mend = format!("the range is {low} to {high}: check the unit under [columns]");
-            file.source().error(what, mend)
+    for (value, time_s) in series.values.iter_mut().zip(&series.times_s) {
+        if !value.is_finite() {
+            *value = f64::NAN;
+            continue;
+        }
+        let scaled = wanted.column.checked(scale.apply(*value, linkage));
+        *value = scaled.map_err(|(would_be, range)| {
+            let name = quote(&channel.name);
+            fault((
+                format!("{value} of channel {name} at {time_s:.3} s {would_be}"),
+                format!("{range}: check the unit under [columns]"),
+            ))
         })?;
     }
     Ok(series)
-}
-
-/// The value in the column's unit; NaN is kept.
-///
-/// # Errors
-/// The value, if it is out of the column's range.
-fn scaled(scale: Scale, linkage: &Linkage, value: f64, column: &Column) -> Result<f64, f64> {
-    if !value.is_finite() {
-        return Ok(f64::NAN);
-    }
-    let value = scale.apply(value, linkage);
-    column.range.contains(&value).then_some(value).ok_or(value)
 }

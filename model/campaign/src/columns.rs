@@ -58,10 +58,8 @@ impl Source {
     pub fn parse(key: &str, text: &str) -> Result<Self, (String, String)> {
         let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
         let Some(column) = column(key) else {
-            return Err((
-                unknown_name("channel", key, &names),
-                offer_names(key, &names),
-            ));
+            let what = unknown_name("channel", key, &names);
+            return Err((what, offer_names(key, &names)));
         };
         let (text, points) = points(text);
         let (name, unit) = match text.rsplit_once(':') {
@@ -100,6 +98,16 @@ impl Source {
         }
     }
 
+    /// The fault of a log that has columns or channels with other names.
+    pub fn missing(&self, kind: &str, names: &[&str]) -> (String, String) {
+        let what = format!(
+            "{kind} {} does not exist; [columns] assigns it to {}",
+            quote(&self.name),
+            self.column.name
+        );
+        (what, offer_columns(&self.name, names))
+    }
+
     /// Conversion from a value of the log to one of the run; `logged` is the unit that the log states.
     ///
     /// # Errors
@@ -119,6 +127,15 @@ impl Source {
         };
         Scale::of(unit, self.column).map_err(|what| (what, how_to_scale(self.column)))
     }
+}
+
+/// The fault of a log of columns or channels, none of which is assigned to a required column.
+pub fn unassigned(kind: &str, column: &Column) -> (String, String) {
+    let Column { name, unit, .. } = column;
+    (
+        format!("no {kind} is assigned to {name}"),
+        format!("assign it under [columns]: {name} = \"Name:{unit}\""),
+    )
 }
 
 fn how_to_scale(column: &Column) -> String {
@@ -183,6 +200,11 @@ impl ColumnSettings {
         Self {
             sources: sources.collect(),
         }
+    }
+
+    /// Whether they are those of [`Self::by_own_names`].
+    pub fn are_own_names(&self) -> bool {
+        self.sources.iter().all(|source| !source.is_required)
     }
 
     /// Reads the table `[columns]` of a campaign, or of one of its runs.

@@ -4,7 +4,7 @@
 //! if the error is small: it is short compared to the valve's own lag, or the current is the same on both sides.
 
 /// Longest gap that is always filled, s. A step within it is shifted by at most half of it.
-const SHORT_GAP_S: f64 = 0.2;
+pub const SHORT_GAP_S: f64 = 0.2;
 /// Longest gap that is filled if the current is the same on both sides, s.
 const STEADY_GAP_S: f64 = 2.0;
 /// Difference below which two currents are the same, A: ten times the noise of a logged current.
@@ -39,43 +39,29 @@ pub fn bridge(time_s: &[f64], current_a: &mut [f64]) -> Result<(), Gap> {
     Ok(())
 }
 
-/// Fills the samples from `first` on, between the known samples `before` and `after`.
+/// Fills the samples from `sample` on, between the known samples `before` and `after`.
 fn fill(
     time_s: &[f64],
     current_a: &mut [f64],
-    first: usize,
+    sample: usize,
     before: Option<usize>,
     after: Option<usize>,
 ) -> Result<(), Gap> {
-    let (from, to) = match (before, after) {
-        (None, None) => {
-            return Err(Gap {
-                sample: first,
-                duration_s: f64::INFINITY,
-            });
-        }
-        (Some(before), None) => (before, before),
-        (None, Some(after)) => (after, after),
-        (Some(before), Some(after)) => (before, after),
-    };
+    let gap = |duration_s| Gap { sample, duration_s };
+    let nearest = before.or(after).zip(after.or(before));
+    let (from, to) = nearest.ok_or(gap(f64::INFINITY))?;
     let end = after.unwrap_or(current_a.len());
-    let duration_s = time_s[after.unwrap_or(end - 1)] - time_s[before.unwrap_or(first)];
+    let duration_s = time_s[after.unwrap_or(end - 1)] - time_s[before.unwrap_or(sample)];
     let steady = from != to && (current_a[to] - current_a[from]).abs() < STEADY_WITHIN_A;
     if duration_s > if steady { STEADY_GAP_S } else { SHORT_GAP_S } {
-        return Err(Gap {
-            sample: first,
-            duration_s,
-        });
+        return Err(gap(duration_s));
     }
-    let (start_a, slope) = if from == to {
-        (current_a[from], 0.0)
-    } else {
-        (
-            current_a[from],
-            (current_a[to] - current_a[from]) / (time_s[to] - time_s[from]),
-        )
+    let start_a = current_a[from];
+    let slope = match from == to {
+        true => 0.0,
+        false => (current_a[to] - start_a) / (time_s[to] - time_s[from]),
     };
-    for i in first..end {
+    for i in sample..end {
         current_a[i] = start_a + slope * (time_s[i] - time_s[from]);
     }
     Ok(())
@@ -104,34 +90,11 @@ mod tests {
 
     #[test]
     fn long_gaps_are_refused_unless_the_current_is_steady() {
-        assert_eq!(
-            bridged(0.25, &[1.0, NAN, 2.0]),
-            Err(Gap {
-                sample: 1,
-                duration_s: 0.5
-            })
-        );
+        let gap = |sample, duration_s| Err(Gap { sample, duration_s });
+        assert_eq!(bridged(0.25, &[1.0, NAN, 2.0]), gap(1, 0.5));
         assert_eq!(bridged(0.25, &[1.0, NAN, 1.0]), Ok(vec![1.0, 1.0, 1.0]));
-        assert_eq!(
-            bridged(1.5, &[1.0, NAN, 1.0]),
-            Err(Gap {
-                sample: 1,
-                duration_s: 3.0
-            })
-        );
-        assert_eq!(
-            bridged(0.25, &[1.0, 1.0, NAN]),
-            Err(Gap {
-                sample: 2,
-                duration_s: 0.25
-            })
-        );
-        assert_eq!(
-            bridged(0.25, &[NAN, NAN]),
-            Err(Gap {
-                sample: 0,
-                duration_s: f64::INFINITY
-            })
-        );
+        assert_eq!(bridged(1.5, &[1.0, NAN, 1.0]), gap(1, 3.0));
+        assert_eq!(bridged(0.25, &[1.0, 1.0, NAN]), gap(2, 0.25));
+        assert_eq!(bridged(0.25, &[NAN, NAN]), gap(0, f64::INFINITY));
     }
 }

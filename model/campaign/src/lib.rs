@@ -17,7 +17,6 @@ mod columns;
 mod csv_log;
 mod cut;
 mod dropout;
-mod files;
 mod little_endian;
 mod manifest;
 mod mdf_log;
@@ -31,8 +30,6 @@ mod table;
 mod time_base;
 
 use std::path::{Path, PathBuf};
-
-pub use csv_log::{flow_curve, linkage_table};
 
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
@@ -134,7 +131,7 @@ impl Campaign {
     /// # Errors
     /// The manifest cannot be parsed.
     pub fn files(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
-        files::named(dir)
+        manifest::files(dir)
     }
 
     /// Reads the campaign of a folder with this text as its manifest, for a hitch with this linkage.
@@ -142,11 +139,36 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`].
     pub fn of_manifest(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
-        let source = SourceFile {
-            path: dir.join("campaign.toml"),
-            text: text.to_owned(),
-        };
-        manifest::read(dir, &source, linkage)
+        manifest::read(dir, &of_text(dir, text), linkage, table::LONGEST_STEP_S)
+    }
+
+    /// The same, whose logs are not yet cut into runs: their clocks may jump ahead.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn uncut(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
+        manifest::read(dir, &of_text(dir, text), linkage, f64::INFINITY)
+    }
+
+    /// Whether the log of each run of a manifest's text continues that of the run before it: the same columns, and times
+    /// that continue. Such logs belong to one recording.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn continued(
+        dir: &Path,
+        text: &str,
+        linkage: &Linkage,
+    ) -> Result<Vec<bool>, CampaignError> {
+        manifest::continued(dir, &of_text(dir, text), linkage)
+    }
+}
+
+/// The text of a manifest in a folder.
+fn of_text(dir: &Path, text: &str) -> SourceFile {
+    SourceFile {
+        path: dir.join("campaign.toml"),
+        text: text.to_owned(),
     }
 }
 
@@ -174,6 +196,7 @@ impl Run {
             cut::Cut::NONE,
             bench,
             Some(oil_temperature_c),
+            table::LONGEST_STEP_S,
         )
     }
 

@@ -11,9 +11,12 @@ use crate::bus_log::BusSettings;
 use crate::columns::ColumnSettings;
 use crate::cut::Cut;
 use crate::run_log::Settings;
-use crate::table::Table;
+use crate::series::median_step_s;
+use crate::table::{LONGEST_STEP_S, Table};
 use crate::{Bench, Campaign, CampaignError, Noise, Run, run_log};
 
+/// Key of the files in which a recording continues.
+const THEN: &str = "then";
 /// The supported format version.
 const FORMAT: f64 = 1.0;
 /// Range of loads that the cylinder can hold below the relief pressure, with a margin, kg.
@@ -29,11 +32,33 @@ const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 
 /// Reads the folder of a campaign with a hitch of this linkage.
 pub fn load(dir: &Path, linkage: &Linkage) -> Result<Campaign, CampaignError> {
-    read(dir, &SourceFile::read(&manifest_path(dir)?)?, linkage)
+    let source = SourceFile::read(&manifest_path(dir)?)?;
+    read(dir, &source, linkage, LONGEST_STEP_S)
 }
 
-/// Reads the campaign of a manifest located in `dir`.
-pub fn read(dir: &Path, source: &SourceFile, linkage: &Linkage) -> Result<Campaign, CampaignError> {
+/// The logs and the DBC that the manifest in a folder refers to, in any folder.
+pub fn files(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
+    let source = SourceFile::read(&dir.join("campaign.toml"))?;
+    let top = TomlTable::parse(&source)?;
+    let mut files = Vec::new();
+    for run in top.tables("run")? {
+        files.extend(run.text("file")?.map(|file| dir.join(file)));
+        let then = run.texts(THEN)?.unwrap_or_default();
+        files.extend(then.into_iter().map(|file| dir.join(file)));
+    }
+    if let Some(can) = top.table("can")? {
+        files.extend(can.text("dbc")?.map(|file| dir.join(file)));
+    }
+    Ok(files)
+}
+
+/// Reads the campaign of a manifest located in `dir`, whose samples are at most `longest_step_s` apart.
+pub fn read(
+    dir: &Path,
+    source: &SourceFile,
+    linkage: &Linkage,
+    longest_step_s: f64,
+) -> Result<Campaign, CampaignError> {
     let top = TomlTable::parse(source)?;
     check_format(&top)?;
     top.only(&[
@@ -60,9 +85,14 @@ pub fn read(dir: &Path, source: &SourceFile, linkage: &Linkage) -> Result<Campai
         bus: Some(&bus),
         columns: columns.as_ref(),
         linkage,
+        longest_step_s,
     };
     let runs = runs(dir, &top, settings)?;
-    let sample_rate_hz = declared_rate_hz.unwrap_or_else(|| logged_rate_hz(&runs));
+    // The rate of the first run's time stamps.
+    let logged_rate_hz = runs
+        .first()
+        .map_or(0.0, |run| 1.0 / median_step_s(&run.time_s));
+    let sample_rate_hz = declared_rate_hz.unwrap_or(logged_rate_hz);
     Ok(Campaign {
         name,
         description,
@@ -103,10 +133,8 @@ fn manifest_path(dir: &Path) -> Result<PathBuf, CampaignError> {
 
 fn folder_name(dir: &Path) -> String {
     let full = dir.canonicalize().unwrap_or_else(|_| dir.to_path_buf());
-    full.file_name().map_or_else(
-        || "campaign".to_owned(),
-        |name| name.to_string_lossy().into_owned(),
-    )
+    let name = full.file_name().map(|name| name.to_string_lossy());
+    name.map_or_else(|| "campaign".to_owned(), Into::into)
 }
 
 fn check_format(top: &TomlTable<'_>) -> Result<(), CampaignError> {
@@ -144,18 +172,15 @@ fn runs(
 ) -> Result<Vec<Run>, CampaignError> {
     let tables = top.tables("run")?;
     if tables.is_empty() {
-        return Err(top.error_at(
-            "run",
-            "the campaign has no runs",
-            "add a [[run]] block for every log",
-        ));
+        let mend = "add a [[run]] block for every log";
+        return Err(top.error_at("run", "the campaign has no runs", mend));
     }
     let mut runs: Vec<Run> = Vec::with_capacity(tables.len());
     let mut parts: Vec<(&str, Cut)> = Vec::with_capacity(tables.len());
     let files = tables.iter().map(|table| file_name(table, "file"));
     let files = files.collect::<Result<Vec<&str>, CampaignError>>()?;
     // A log of several consecutive runs is read once.
-    let mut last: Option<(PathBuf, Option<ColumnSettings>, Table)> = None;
+    let mut last: Option<(Vec<PathBuf>, Option<ColumnSettings>, Table)> = None;
     for (table, &file) in tables.iter().zip(&files) {
         let cut = Cut::read(table)?;
         let mut others = parts.iter();
@@ -166,27 +191,77 @@ fn runs(
         }
         parts.push((file, cut));
         let (bench, oil_temperature_c) = conditions(table)?;
-        let path = file_in(dir, table, "file")?;
+        let paths = logs_of(dir, table)?;
         let own = ColumnSettings::read(table)?;
         let log = match last.take() {
-            Some((log, columns, read)) if log == path && columns == own => read,
+            Some((logs, columns, read)) if logs == paths && columns == own => read,
             _ => {
                 let columns = own.as_ref().or(settings.columns);
-                run_log::table(
-                    &path,
-                    Settings {
-                        columns,
-                        ..settings
-                    },
-                )?
+                let settings = Settings {
+                    columns,
+                    ..settings
+                };
+                joined(&paths, settings)?
             }
         };
-        let run = run_log::run(&log, called(file, &files), cut, bench, oil_temperature_c)?;
-        last = Some((path.clone(), own, log));
-        run_log::check_usable(&path, &run)?;
+        let (name, step_s) = (called(file, &files), settings.longest_step_s);
+        let run = run_log::run(&log, name, cut, bench, oil_temperature_c, step_s)?;
+        run_log::check_usable(&paths[0], &run)?;
+        last = Some((paths, own, log));
         runs.push(run);
     }
     Ok(runs)
+}
+
+/// The files of a run: its log, and those in which its recording continues.
+fn logs_of(dir: &Path, table: &TomlTable<'_>) -> Result<Vec<PathBuf>, CampaignError> {
+    let mut paths = vec![file_in(dir, table, "file")?];
+    for file in table.texts(THEN)?.unwrap_or_default() {
+        let path = dir.join(file);
+        if !path.exists() {
+            let what = format!("file {} does not exist", quote(file));
+            return Err(table.error_at(THEN, what, "correct the name, or delete it from the list"));
+        }
+        paths.push(path);
+    }
+    Ok(paths)
+}
+
+/// The log of a recording in these files, the first of which exists.
+fn joined(paths: &[PathBuf], settings: Settings<'_>) -> Result<Table, CampaignError> {
+    let mut log = run_log::table(&paths[0], settings)?;
+    for path in &paths[1..] {
+        log = log.joined(&run_log::table(path, settings)?)?;
+    }
+    Ok(log)
+}
+
+/// Whether the log of each run of a manifest continues that of the run before it, with the same columns.
+pub fn continued(
+    dir: &Path,
+    source: &SourceFile,
+    linkage: &Linkage,
+) -> Result<Vec<bool>, CampaignError> {
+    let top = TomlTable::parse(source)?;
+    let bus = BusSettings::read(dir, &top)?;
+    let common = ColumnSettings::read(&top)?;
+    let mut last: Option<(Option<ColumnSettings>, Table)> = None;
+    let mut continued = Vec::new();
+    for table in top.tables("run")? {
+        let own = ColumnSettings::read(&table)?.or_else(|| common.clone());
+        let settings = Settings {
+            bus: Some(&bus),
+            columns: own.as_ref(),
+            linkage,
+            ..Settings::default()
+        };
+        let log = joined(&logs_of(dir, &table)?, settings)?;
+        let is_next =
+            last.is_some_and(|(columns, last)| columns == own && last.is_continued_by(&log));
+        continued.push(is_next);
+        last = Some((own, log));
+    }
+    Ok(continued)
 }
 
 /// Display name of a log: the file name of a log elsewhere, unless another one has the same name.
@@ -236,6 +311,7 @@ fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, Campaig
 fn conditions(table: &TomlTable<'_>) -> Result<(Bench, Option<f64>), CampaignError> {
     let others = [
         "file",
+        THEN,
         "bench",
         "load_kg",
         "port_pressure_bar",
@@ -269,23 +345,6 @@ fn belongs_elsewhere(table: &TomlTable<'_>, key: &str, bench: &str) -> Result<()
         return Ok(());
     }
     let what = format!("{key} is valid only for a run on the {bench} bench");
-    Err(table.error_at(
-        key,
-        what,
-        format!("delete the line, or write bench = \"{bench}\""),
-    ))
-}
-
-/// Rate of the first run's time stamps (median step), Hz.
-fn logged_rate_hz(runs: &[Run]) -> f64 {
-    let Some(run) = runs.first() else { return 0.0 };
-    let mut steps_s: Vec<f64> = run
-        .time_s
-        .windows(2)
-        .map(|pair| pair[1] - pair[0])
-        .collect();
-    steps_s.sort_by(f64::total_cmp);
-    steps_s
-        .get(steps_s.len() / 2)
-        .map_or(0.0, |step_s| 1.0 / step_s)
+    let mend = format!("delete the line, or write bench = \"{bench}\"");
+    Err(table.error_at(key, what, mend))
 }

@@ -112,32 +112,20 @@ impl ChannelFile for MdfFile {
         let [data_group, group, index] = self.places[channel];
         let (times_s, values) = match &self.reader {
             Reader::V4(file) => {
-                let place = file.data_groups().get(data_group);
-                let group = place.and_then(|place| place.channel_groups.get(group));
-                let found = group.and_then(|group| group.channels.get(index));
-                let Some(found) = found else {
-                    return Ok(Series::default());
-                };
-                samples_of_v4(file, found).map_err(fault)?
+                let channels = &file.data_groups()[data_group].channel_groups[group].channels;
+                samples_of_v4(file, &channels[index]).map_err(fault)?
             }
             Reader::V3(file) => {
-                let groups = &file.data_groups()[data_group].channel_groups;
-                let times = groups[group]
-                    .channels
-                    .iter()
-                    .position(|channel| channel.is_time());
-                let values = file
-                    .channel_physical(data_group, group, index)
-                    .map_err(fault)?;
-                let times_s = match times {
-                    Some(times) => {
-                        let unit = &groups[group].channels[times].unit;
-                        let times = file.channel_physical(data_group, group, times);
-                        in_seconds(times.map_err(fault)?.to_f64(), unit)
-                    }
-                    None => Vec::new(),
+                let channels = &file.data_groups()[data_group].channel_groups[group].channels;
+                let read = |index| {
+                    let values = file.channel_physical(data_group, group, index);
+                    values.map(|values| values.to_f64()).map_err(fault)
                 };
-                (times_s, values.to_f64())
+                let times = channels.iter().position(|channel| channel.is_time());
+                let times_s = times.map_or(Ok(Vec::new()), |times| {
+                    Ok(in_seconds(read(times)?, &channels[times].unit))
+                });
+                (times_s?, read(index)?)
             }
         };
         if times_s.len() != values.len() {
@@ -212,18 +200,16 @@ fn channels_of_v3(file: &Mdf3File) -> Vec<Placed> {
                 if channel.is_time() {
                     continue;
                 }
-                let found = LogChannel {
-                    name: channel.name.clone(),
-                    unit: unit(&channel.unit),
-                    samples: group.cycle_count as usize,
-                    fault: None,
-                };
                 let comment = group.comment.lines().next().unwrap_or_default();
-                let labels = [comment.to_owned(), String::new(), format!("group {number}")];
                 channels.push(Placed {
-                    channel: found,
+                    channel: LogChannel {
+                        name: channel.name.clone(),
+                        unit: unit(&channel.unit),
+                        samples: group.cycle_count as usize,
+                        fault: None,
+                    },
                     place: [data_group, group_index, index],
-                    labels,
+                    labels: [comment.to_owned(), String::new(), format!("group {number}")],
                 });
             }
         }

@@ -13,7 +13,7 @@ use crate::cut::Cut;
 use crate::mdf_log::MdfFile;
 use crate::number_log::NumberLog;
 use crate::scale::nominal_linkage;
-use crate::table::{LIFT, LOWER, OIL_TEMPERATURE, TIME, Table};
+use crate::table::{LIFT, LONGEST_STEP_S, LOWER, OIL_TEMPERATURE, TIME, Table};
 use crate::{Bench, CampaignError, Run, bus_log, channel_log, csv_log, mdf_log};
 
 /// Oil temperature of a run without a stated or logged one, degrees Celsius: that of the paper's valve tables.
@@ -28,6 +28,8 @@ pub struct Settings<'s> {
     pub columns: Option<&'s ColumnSettings>,
     /// The linkage, for the conversion of cylinder travel to rocker angle.
     pub linkage: &'s Linkage,
+    /// Longest accepted step between two samples, s.
+    pub longest_step_s: f64,
 }
 
 impl Default for Settings<'_> {
@@ -36,6 +38,7 @@ impl Default for Settings<'_> {
             bus: None,
             columns: None,
             linkage: nominal_linkage(),
+            longest_step_s: LONGEST_STEP_S,
         }
     }
 }
@@ -45,6 +48,12 @@ impl Default for Settings<'_> {
 /// # Errors
 /// The first fault, with file, line and column.
 pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError> {
+    bus_log::check_known(path)?;
+    if let Some(format) = Format::of(path) {
+        let source = Arc::new(format.source(path)?);
+        let ecu = BusSettings::default();
+        return bus_log::read(&source, format, settings.bus.unwrap_or(&ecu));
+    }
     if mdf_log::is_mdf(path) {
         let file = MdfFile::open(path)?;
         return channel_log::read(&file, settings.columns, settings.linkage);
@@ -52,21 +61,11 @@ pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError
     if let Some(log) = NumberLog::open(path)? {
         return channel_log::read(&log, settings.columns, settings.linkage);
     }
-    bus_log::check_known(path)?;
-    match Format::of(path) {
-        Some(format) => {
-            let source = Arc::new(format.source(path)?);
-            let ecu = BusSettings::default();
-            bus_log::read(&source, format, settings.bus.unwrap_or(&ecu))
-        }
-        None => {
-            let source = Arc::new(SourceFile::read_any(path)?);
-            csv_log::read(&source, settings.columns, settings.linkage)
-        }
-    }
+    let source = Arc::new(SourceFile::read_any(path)?);
+    csv_log::read(&source, settings.columns, settings.linkage)
 }
 
-/// The run of a part of a log; it may contain only currents. The oil temperature is the stated one, else the mean of the
+/// The run of a part of a log, without a step above `longest_step_s`; it may contain only currents. The oil temperature is the stated one, else the mean of the
 /// log, else an assumed one.
 ///
 /// # Errors
@@ -77,10 +76,11 @@ pub fn run(
     cut: Cut,
     bench: Bench,
     stated_temperature_c: Option<f64>,
+    longest_step_s: f64,
 ) -> Result<Run, CampaignError> {
     let table = table.cut(cut)?;
     let time_s = table.required(TIME)?;
-    table.check_time(time_s)?;
+    table.check_time(time_s, longest_step_s)?;
     let lift_current_a = table.current(LIFT, time_s)?;
     let lower_current_a = table.current(LOWER, time_s)?;
     let channels = Channel::ALL.map(|channel| {

@@ -11,66 +11,32 @@ use crate::table::{Column, OIL_TEMPERATURE, TIME};
 /// Kelvin at 0 degrees Celsius.
 const ZERO_C_K: f64 = 273.15;
 
-/// Alternative spellings of units: of tools, and in German.
-const SPELLINGS: &[(&str, &str)] = &[
-    ("°", "deg"),
-    ("deg", "deg"),
-    ("degree", "deg"),
-    ("degrees", "deg"),
-    ("grad", "deg"),
-    ("radian", "rad"),
-    ("radians", "rad"),
-    ("c", "degC"),
-    ("°c", "degC"),
-    ("degc", "degC"),
-    ("deg c", "degC"),
-    ("deg_c", "degC"),
-    ("celsius", "degC"),
-    ("f", "degF"),
-    ("°f", "degF"),
-    ("degf", "degF"),
-    ("lpm", "l/min"),
-    ("l/min", "l/min"),
-    ("ltr/min", "l/min"),
-    ("l min-1", "l/min"),
-    ("l/s", "l/s"),
-    ("us gpm", "gpm"),
-    ("gal/min", "gpm"),
-    ("amp", "A"),
-    ("amps", "A"),
-    ("ampere", "A"),
-    ("a", "A"),
-    ("ma", "mA"),
-    ("bar", "bar"),
-    ("barg", "bar"),
-    ("bar(g)", "bar"),
-    ("bar(a)", "bara"),
-    ("bar abs", "bara"),
-    ("psi(a)", "psia"),
-    ("psi abs", "psia"),
-    ("kpa(a)", "kPaa"),
-    ("kpa abs", "kPaa"),
-    ("kpa", "kPa"),
-    ("pa", "Pa"),
-    ("psig", "psi"),
-    ("sec", "s"),
-    ("sek", "s"),
-    ("seconds", "s"),
-    ("volt", "V"),
-    ("minute", "min"),
-    ("minutes", "min"),
-    ("minuten", "min"),
-    ("hours", "h"),
-    ("stunden", "h"),
-    ("msec", "ms"),
-    ("millisekunden", "ms"),
-    ("usec", "us"),
-    ("day", "d"),
-    ("days", "d"),
-    ("tage", "d"),
-    ("datenum", "d"),
-    ("percent", "%"),
-    ("prozent", "%"),
+/// Units with their alternative spellings in lower case: of tools, and in German.
+const SPELLINGS: &[(&str, &[&str])] = &[
+    ("deg", &["°", "deg", "degree", "degrees", "grad"]),
+    ("rad", &["radian", "radians"]),
+    ("degC", &["c", "°c", "degc", "deg c", "deg_c", "celsius"]),
+    ("degF", &["f", "°f", "degf"]),
+    ("l/min", &["lpm", "l/min", "ltr/min", "l min-1"]),
+    ("l/s", &["l/s"]),
+    ("gpm", &["us gpm", "gal/min"]),
+    ("A", &["amp", "amps", "ampere", "a"]),
+    ("mA", &["ma"]),
+    ("bar", &["bar", "barg", "bar(g)"]),
+    ("bara", &["bar(a)", "bar abs"]),
+    ("psia", &["psi(a)", "psi abs"]),
+    ("kPaa", &["kpa(a)", "kpa abs"]),
+    ("kPa", &["kpa"]),
+    ("Pa", &["pa"]),
+    ("psi", &["psig"]),
+    ("s", &["sec", "sek", "seconds"]),
+    ("V", &["volt"]),
+    ("min", &["minute", "minutes", "minuten"]),
+    ("h", &["hours", "stunden"]),
+    ("ms", &["msec", "millisekunden"]),
+    ("us", &["usec"]),
+    ("d", &["day", "days", "tage", "datenum"]),
+    ("%", &["percent", "prozent"]),
 ];
 
 /// Units that formulas do not have, each as a multiple of one that they have.
@@ -211,8 +177,9 @@ pub fn spelling(unit: &str) -> &str {
     if parsed(unit).is_some() {
         return unit;
     }
-    let known = SPELLINGS.iter().find(|(other, _)| *other == lower);
-    known.map_or(unit, |(_, usual)| usual)
+    let mut known = SPELLINGS.iter();
+    let known = known.find(|(_, others)| others.contains(&lower.as_str()));
+    known.map_or(unit, |(usual, _)| usual)
 }
 
 fn parsed(unit: &str) -> Option<Unit> {
@@ -269,7 +236,11 @@ mod tests {
             (10.0, "gpm", "flow_lpm", 37.854_118),
             (std::f64::consts::FRAC_PI_2, "rad", "rocker_angle_deg", 90.0),
             (90.0, "°", "rocker_angle_deg", 90.0),
+            (90.0, "Deg", "rocker_angle_deg", 90.0),
+            (20.0, "L/min", "flow_lpm", 20.0),
+            (40.0, "C", "oil_temperature_c", 40.0),
             (104.0, "°F", "oil_temperature_c", 40.0),
+            (104.0, "degF", "oil_temperature_c", 40.0),
             (313.15, "K", "oil_temperature_c", 40.0),
             (20.0, "ms", "time_s", 0.02),
             (0.5, "days", "time_s", 43_200.0),

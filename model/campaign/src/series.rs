@@ -13,6 +13,14 @@ pub struct Series {
     pub bytes: Vec<usize>,
 }
 
+/// The median step of times, s; infinite for a single one.
+pub fn median_step_s(times_s: &[f64]) -> f64 {
+    let mut steps_s: Vec<f64> = times_s.windows(2).map(|two| two[1] - two[0]).collect();
+    steps_s.sort_by(f64::total_cmp);
+    let middle = steps_s.get(steps_s.len() / 2);
+    middle.copied().unwrap_or(f64::INFINITY)
+}
+
 impl Series {
     /// Adds a sample; duplicates are merged.
     pub fn push(&mut self, time_s: f64, value: f64, byte: usize) {
@@ -22,16 +30,6 @@ impl Series {
         self.times_s.push(time_s);
         self.values.push(value);
         self.bytes.push(byte);
-    }
-
-    /// The median time between samples, s; infinite for a single one.
-    pub fn median_step_s(&self) -> f64 {
-        let mut steps_s: Vec<f64> = self.times_s.windows(2).map(|two| two[1] - two[0]).collect();
-        steps_s.sort_by(f64::total_cmp);
-        steps_s
-            .get(steps_s.len() / 2)
-            .copied()
-            .unwrap_or(f64::INFINITY)
     }
 
     /// The measurements at `times_s`, which rise. Each sample belongs to its nearest time, if it is within `within_s`, and is
@@ -120,10 +118,11 @@ impl Series {
     }
 }
 
-/// A column of a log from the samples of its signal: currents, which are inputs of the model, are interpolated; measured
+/// A column of a log from the samples of its signal, at its own times as they are. Elsewhere currents, which are inputs of the model, are interpolated; measured
 /// channels keep the noise of their samples.
 pub fn values(column: &str, series: &Series, times_s: &[f64], within_s: f64) -> Vec<f64> {
     match column {
+        _ if series.times_s == times_s => series.values.clone(),
         LIFT | LOWER => series.at(times_s, within_s),
         _ => series.measured_at(times_s, within_s),
     }

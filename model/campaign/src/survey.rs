@@ -8,11 +8,13 @@ use hitch_input::source_file::SourceFile;
 use crate::bus_log::Format;
 use crate::mdf_log::MdfFile;
 use crate::number_log::NumberLog;
-use crate::scale::{above_air, is_unit_of};
+use crate::scale::{above_air, is_unit_of, spelling};
 use crate::table::{COLUMNS, TIME, column};
 use crate::{CampaignError, bus_log, channel_log, columns, csv_log, mdf_log};
 
 pub use crate::bus_log::Signals;
+pub use crate::csv_log::{TextTable, text_table};
+pub use crate::dropout::SHORT_GAP_S as LONGEST_GAP_S;
 pub use crate::time_base::{is_in, is_time_name, is_unit_of_time, unit_size_s, words};
 
 /// A column of a table, or a channel.
@@ -34,6 +36,17 @@ pub struct LogColumn {
     pub lasts_s: Option<f64>,
     /// Why it cannot be used; `None` if it can.
     pub fault: Option<String>,
+}
+
+impl LogColumn {
+    /// A column without numbers; the log may spell its unit in any way.
+    pub(crate) fn new(name: &str, unit: Option<&str>) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: unit.map(|unit| spelling(unit).to_owned()),
+            ..Self::default()
+        }
+    }
 }
 
 /// Separator between the name of a channel and the name of its group, which is added to equal names.
@@ -74,23 +87,23 @@ impl Survey {
     /// # Errors
     /// The log cannot be read.
     pub fn of(path: &Path) -> Result<Self, CampaignError> {
+        bus_log::check_known(path)?;
+        if let Some(format) = Format::of(path) {
+            return format.source(path).map(|_| Self::Bus);
+        }
         if mdf_log::is_mdf(path) {
             let columns = channel_log::survey(&MdfFile::open(path)?);
             let notes = Vec::new();
             return Ok(Self::Channels { columns, notes });
         }
-        if let Some(log) = NumberLog::open(path)? {
-            return Ok(log.survey());
-        }
-        bus_log::check_known(path)?;
-        match Format::of(path) {
-            Some(format) => format.source(path).map(|_| Self::Bus),
+        match NumberLog::open(path)? {
+            Some(log) => Ok(log.survey()),
             None => csv_log::survey(&SourceFile::read_any(path)?),
         }
     }
 }
 
-/// Whether a file is a bus log, by its name.
+/// Whether a file is a bus log, by its name or contents.
 #[must_use]
 pub fn is_bus(path: &Path) -> bool {
     Format::of(path).is_some()
@@ -105,7 +118,7 @@ pub fn bus_signals(path: &Path, dbc: &Path) -> Result<Signals, CampaignError> {
     match Format::of(path) {
         Some(format) => bus_log::signals(&format.source(path)?, format, &description),
         None => {
-            let mend = "its name ends in .log, .asc or .blf";
+            let mend = "it is .log, .asc, .blf, or frames in MDF or CSV";
             Err(InputError::of_file(path, "is not a log of a bus", mend))
         }
     }

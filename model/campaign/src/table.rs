@@ -8,12 +8,16 @@ use hitch_input::source_file::SourceFile;
 use hitch_plant::Channel;
 
 use crate::cut::Cut;
+use crate::dropout::SHORT_GAP_S as LONGEST_GAP_S;
+use crate::series::{Series, median_step_s, values};
 use crate::{CampaignError, Run, dropout};
 
 /// Longest step between two samples, s: the valve motion within a longer one is unknown.
-const LONGEST_STEP_S: f64 = 2.0;
+pub const LONGEST_STEP_S: f64 = 2.0;
 /// Range of time stamps, s: beyond it, rounding errors affect the step between samples.
 const TIME_S: RangeInclusive<f64> = -1e7..=1e10;
+/// Range of currents, A.
+const CURRENT_A: RangeInclusive<f64> = -10.0..=10.0;
 
 /// Name of the time column.
 pub const TIME: &str = "time_s";
@@ -35,6 +39,20 @@ pub struct Column {
     pub range: RangeInclusive<f64>,
 }
 
+impl Column {
+    /// A value, if it is in the range.
+    ///
+    /// # Errors
+    /// What the value would be, and the range.
+    pub fn checked(&self, value: f64) -> Result<f64, (String, String)> {
+        let (low, high) = (self.range.start(), self.range.end());
+        let would_be = || format!("would be {} = {value}", self.name);
+        let range = || format!("the range is {low} to {high}");
+        let is_in = self.range.contains(&value);
+        is_in.then_some(value).ok_or_else(|| (would_be(), range()))
+    }
+}
+
 const fn known(name: &'static str, unit: &'static str, range: RangeInclusive<f64>) -> Column {
     Column { name, unit, range }
 }
@@ -42,11 +60,14 @@ const fn known(name: &'static str, unit: &'static str, range: RangeInclusive<f64
 /// The time column.
 pub static TIMES: Column = known(TIME, "s", TIME_S);
 
+/// The column of the lift current.
+pub static LIFTS: Column = known(LIFT, "A", CURRENT_A);
+
 /// All possible columns.
 pub static COLUMNS: [Column; 8] = [
     known(TIME, "s", TIME_S),
-    known(LIFT, "A", -10.0..=10.0),
-    known(LOWER, "A", -10.0..=10.0),
+    known(LIFT, "A", CURRENT_A),
+    known(LOWER, "A", CURRENT_A),
     known(Channel::PumpPressure.key(), "bar", -10.0..=1000.0),
     known(Channel::CylinderPressure.key(), "bar", -10.0..=1000.0),
     known(Channel::Flow.key(), "l/min", -1000.0..=1000.0),
@@ -72,23 +93,26 @@ pub enum Cells {
 
 /// The samples of one column.
 #[derive(Debug, Clone)]
-pub struct Samples {
+struct Samples {
     /// The column's name.
-    pub name: &'static str,
+    name: &'static str,
     /// Its cell index, if rows have cells.
-    pub cell: usize,
+    cell: usize,
     /// Its samples; NaN where missing.
-    pub values: Vec<f64>,
+    values: Vec<f64>,
 }
 
 /// The numbers of a log by column; NaN for empty cells.
 #[derive(Debug, Clone)]
 pub struct Table {
-    source: Arc<SourceFile>,
+    /// The files, each with its first row.
+    sources: Vec<(usize, Arc<SourceFile>)>,
     columns: Vec<Samples>,
-    /// Byte offset of each row in the file.
+    /// Byte offset of each row in its file.
     rows: Vec<usize>,
     cells: Cells,
+    /// Time of the logger's clock at time 0, s; zero if it is unknown.
+    origin_s: f64,
 }
 
 impl Table {
@@ -96,7 +120,7 @@ impl Table {
     ///
     /// # Errors
     /// There are too few rows for a run.
-    pub fn new(
+    fn new(
         source: Arc<SourceFile>,
         columns: Vec<Samples>,
         rows: Vec<usize>,
@@ -110,12 +134,83 @@ impl Table {
                 Err(source.error(what, mend))
             }
             _ => Ok(Self {
-                source,
+                sources: vec![(0, source)],
                 columns,
                 rows,
                 cells,
+                origin_s: 0.0,
             }),
         }
+    }
+
+    /// The table whose rows are the samples of the lift current. Samples of other series are moved to the times of the
+    /// rows if one is within half a row; `time` and the series are given with their cells, if rows have cells.
+    ///
+    /// # Errors
+    /// There are too few rows for a run.
+    pub fn of_series<'s>(
+        source: &Arc<SourceFile>,
+        (time, rows): (usize, &Series),
+        series: impl Iterator<Item = (&'static str, usize, &'s Series)>,
+        cells: Cells,
+    ) -> Result<Self, CampaignError> {
+        let times_s = &rows.times_s;
+        let within_s = median_step_s(times_s) / 2.0;
+        let samples = |name, cell, values| Samples { name, cell, values };
+        let moved = |(name, cell, series): (_, _, &Series)| {
+            samples(name, cell, values(name, series, times_s, within_s))
+        };
+        let columns = std::iter::once(samples(TIME, time, times_s.clone()));
+        let columns = columns.chain(series.map(moved)).collect();
+        Self::new(Arc::clone(source), columns, rows.bytes.clone(), cells)
+    }
+
+    /// The same table, whose time 0 is that of the logger's clock, s.
+    pub fn since(self, origin_s: f64) -> Self {
+        Self { origin_s, ..self }
+    }
+
+    /// Whether another table has the same columns, and times that continue: it belongs to the same recording.
+    pub fn is_continued_by(&self, next: &Self) -> bool {
+        let times_s = self.column(TIME).unwrap_or_default();
+        let next_s = next.column(TIME).unwrap_or_default().first();
+        let Some((last_s, next_s)) = times_s.last().zip(next_s) else {
+            return false;
+        };
+        let step_s = next.origin_s + next_s - (self.origin_s + last_s);
+        let is_next = step_s > 0.0 && step_s - median_step_s(times_s) <= LONGEST_GAP_S;
+        let [own, others] = [self, next].map(|table| table.columns.iter().map(|of| of.name));
+        is_next && own.eq(others)
+    }
+
+    /// The rows of this table, and below them those of the next file of its recording.
+    ///
+    /// # Errors
+    /// The next table does not continue this one.
+    pub fn joined(mut self, next: &Self) -> Result<Self, CampaignError> {
+        if !self.is_continued_by(next) {
+            let what = format!("does not continue {}", self.sources[0].1.path.display());
+            let mend = "joined files have the same columns, and times that continue: give it a [[run]] block of its own";
+            return Err(next.sources[0].1.error(what, mend));
+        }
+        let later_s = next.origin_s - self.origin_s;
+        let rows = self.rows.len();
+        let sources = next.sources.iter();
+        self.sources
+            .extend(sources.map(|(row, source)| (rows + row, Arc::clone(source))));
+        self.rows.extend(&next.rows);
+        for (own, samples) in self.columns.iter_mut().zip(&next.columns) {
+            let later = if own.name == TIME { later_s } else { 0.0 };
+            own.values
+                .extend(samples.values.iter().map(|value| value + later));
+        }
+        Ok(self)
+    }
+
+    /// The file of a row.
+    fn source(&self, row: usize) -> &Arc<SourceFile> {
+        let after = self.sources.partition_point(|(first, _)| *first <= row);
+        &self.sources[after.saturating_sub(1)].1
     }
 
     /// The rows of a time span.
@@ -139,25 +234,27 @@ impl Table {
                 "a run needs at least {}; from_s and to_s are seconds after the first sample",
                 Run::FEWEST_SAMPLES
             );
-            return Err(self.source.error(what, mend));
+            return Err(self.source(0).error(what, mend));
         }
+        let before = stays.iter().take_while(|stays| !**stays).count();
+        let sources = self.sources.iter();
+        let sources = sources.map(|(row, source)| (row.saturating_sub(before), Arc::clone(source)));
         let columns = self.columns.iter().map(|samples| Samples {
             values: kept_of(&samples.values, &stays),
             ..*samples
         });
         Ok(Self {
-            source: Arc::clone(&self.source),
+            sources: sources.collect(),
             columns: columns.collect(),
             rows: kept_of(&self.rows, &stays),
             cells: self.cells,
+            origin_s: self.origin_s,
         })
     }
 
     fn column(&self, name: &str) -> Option<&[f64]> {
-        self.columns
-            .iter()
-            .find(|samples| samples.name == name)
-            .map(|samples| samples.values.as_slice())
+        let found = self.columns.iter().find(|samples| samples.name == name);
+        found.map(|samples| samples.values.as_slice())
     }
 
     /// A required column.
@@ -169,8 +266,8 @@ impl Table {
             let what = format!("column {name} is missing");
             let mend = format!("log it: every run needs {TIME}, {LIFT} and {LOWER}");
             match self.cells {
-                Cells::Nowhere => self.source.error(what, mend),
-                _ => self.source.error_at(0, what, mend),
+                Cells::Nowhere => self.source(0).error(what, mend),
+                _ => self.source(0).error_at(0, what, mend),
             }
         })
     }
@@ -178,10 +275,8 @@ impl Table {
     /// A measured column, if it exists and has values.
     pub fn measured(&self, name: &str) -> Option<Vec<f64>> {
         let values = self.column(name)?;
-        values
-            .iter()
-            .any(|value| !value.is_nan())
-            .then(|| values.to_vec())
+        let is_measured = values.iter().any(|value| !value.is_nan());
+        is_measured.then(|| values.to_vec())
     }
 
     /// A current, with its dropouts filled.
@@ -193,10 +288,9 @@ impl Table {
         match dropout::bridge(time_s, &mut current_a) {
             Ok(()) => Ok(current_a),
             Err(gap) => {
-                let what = if gap.duration_s.is_finite() {
-                    format!("{name} is missing for {:.2} s", gap.duration_s)
-                } else {
-                    format!("{name} has no values")
+                let what = match gap.duration_s.is_finite() {
+                    true => format!("{name} is missing for {:.2} s", gap.duration_s),
+                    false => format!("{name} has no values"),
                 };
                 let mend = "the currents are inputs of the model: log the run again, or cut it before the gap";
                 Err(self.error_in(gap.sample, name, what, mend))
@@ -207,15 +301,15 @@ impl Table {
     /// Rejects times that do not increase from row to row.
     ///
     /// # Errors
-    /// The first row that is not later than the previous one, or too much later.
-    pub fn check_time(&self, time_s: &[f64]) -> Result<(), CampaignError> {
+    /// The first row that is not later than the previous one, or later by more than `longest_s`.
+    pub fn check_time(&self, time_s: &[f64], longest_s: f64) -> Result<(), CampaignError> {
         for (sample, pair) in time_s.windows(2).enumerate() {
             let (before_s, now_s) = (pair[0], pair[1]);
             let fault = if now_s < before_s {
                 "goes back"
             } else if now_s == before_s {
                 "stands still"
-            } else if now_s - before_s > LONGEST_STEP_S {
+            } else if now_s - before_s > longest_s {
                 "jumps"
             } else {
                 continue;
@@ -240,9 +334,9 @@ impl Table {
         let cell = samples.map_or(0, |samples| samples.cell);
         let byte = self.rows.get(row).copied().unwrap_or(0);
         match self.cells {
-            Cells::Between(mark) => cell_error(&self.source, byte, (cell, mark), what, mend),
-            Cells::OneALine => self.source.error_at(byte, what, mend),
-            Cells::Nowhere => self.source.error(what, mend),
+            Cells::Between(mark) => cell_error(self.source(row), byte, (cell, mark), what, mend),
+            Cells::OneALine => self.source(row).error_at(byte, what, mend),
+            Cells::Nowhere => self.source(row).error(what, mend),
         }
     }
 }
@@ -263,20 +357,20 @@ pub fn cell_error(
     let Position { line, column } = source.place(row_byte);
     let row = source.text.get(row_byte..).unwrap_or_default();
     let before = cells_before(row, index, mark);
-    InputError::at(
-        &source.path,
-        Position {
-            line,
-            column: column + before,
-        },
-        what,
-        mend,
-    )
+    let column = column + before;
+    InputError::at(&source.path, Position { line, column }, what, mend)
 }
 
 /// Number of characters of a row before its cell `index`.
 fn cells_before(row: &str, index: usize, mark: char) -> usize {
     let (mut quoted, mut marks) = (false, 0);
+    if mark == ' ' {
+        // Several spaces are one separator.
+        let cell = row.split_whitespace().nth(index).unwrap_or_default();
+        let byte = (cell.as_ptr() as usize).checked_sub(row.as_ptr() as usize);
+        let before = byte.and_then(|byte| row.get(..byte)).unwrap_or_default();
+        return before.chars().count();
+    }
     for (characters, c) in row.chars().enumerate() {
         if marks == index {
             return characters;

@@ -3,7 +3,7 @@
 //! A log may have a column of times for each rate. A column belongs to the times whose name it shares, else to those before
 //! it; the number of samples decides if these do not fit.
 
-use crate::scale::Scale;
+use crate::scale::{Scale, spelling};
 use crate::table::TIMES as TIME_COLUMN;
 
 /// Part of the steps that rise in a column of times: one that does not rise everywhere is refused later, with its line.
@@ -39,6 +39,20 @@ pub struct Seen {
     pub samples: usize,
     /// Whether its values rise from sample to sample.
     pub rises: bool,
+}
+
+impl Seen {
+    /// A column with these samples, in a unit of any spelling.
+    pub fn new(name: &str, unit: Option<&str>, values: &[f64]) -> Self {
+        Self {
+            name: name.to_owned(),
+            is_in_time: unit.is_some_and(|unit| is_unit_of_time(spelling(unit))),
+            has_unit: unit.is_some(),
+            is_clock: false,
+            samples: values.len(),
+            rises: rises(values),
+        }
+    }
 }
 
 /// Whether values rise from sample to sample, apart from a few faults; NaN is skipped.

@@ -212,6 +212,27 @@ impl<'a> TomlTable<'a> {
         }
     }
 
+    /// A list of texts; `None` if the key is missing.
+    ///
+    /// # Errors
+    /// The value is not a list of texts.
+    pub fn texts(&self, key: &str) -> Result<Option<Vec<&str>>, InputError> {
+        let Some(value) = self.entries.get(key) else {
+            return Ok(None);
+        };
+        let text = |item: &'_ Spanned<DeValue<'a>>| matches!(item.get_ref(), DeValue::String(_));
+        match value.get_ref() {
+            DeValue::Array(items) if items.iter().all(text) => {
+                let texts = items.iter().filter_map(|item| item.get_ref().as_str());
+                Ok(Some(texts.collect()))
+            }
+            _ => {
+                let what = format!("{key} has to be a list of texts");
+                Err(self.error_at(key, what, format!("write {key} = [\"...\"]")))
+            }
+        }
+    }
+
     /// A required text.
     ///
     /// # Errors

@@ -1,20 +1,23 @@
 //! `hitch effects`: the catalogue of physical effects, and the elements of formulas.
+mod catalogue;
 mod formulas;
 
 use std::fmt::Write as _;
 
+pub use catalogue::Catalogue;
 use hitch_plant::{Effect, Model, full_name};
 
 use crate::effect_arg::find;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
-use crate::output;
+use crate::output::{self, JsonArg};
+use crate::outputs::Outputs;
 use crate::text::{Table, indented, wrapped};
 
 /// Arguments of `hitch effects`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Examples:\n  hitch effects\n  hitch effects lower-threshold-shift\n  hitch effects --formulas"
+    after_help = "Examples:\n  hitch effects\n  hitch effects lower-threshold-shift\n  hitch effects --formulas\n  hitch effects --json - | jq '.effects[].id'"
 )]
 pub struct Args {
     /// Show only this effect, in full detail
@@ -24,20 +27,34 @@ pub struct Args {
     formulas: bool,
     #[command(flatten)]
     model: ModelArg,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// If the effect is not in the catalogue.
+/// If the effect is not in the catalogue, or the output cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     if args.formulas {
+        if args.json.target().is_some() {
+            let what = "--formulas is a text for people; --json writes the effects";
+            return Err(Error::Usage(what.to_owned()));
+        }
         return output::print(&formulas::text());
     }
+    let outputs = Outputs::check([args.json.target()], &[args.model.file()])?;
     let model = args.model.load()?;
     match &args.effect {
-        None => output::print(&list(&model)),
-        Some(id) => output::print(&card(find(&model, id)?)),
+        None => {
+            let catalogue = Catalogue::of(hitch_effects::available(&model).into_iter());
+            outputs.tell(&args.json, &catalogue, || list(&model))
+        }
+        Some(id) => {
+            let effect = find(&model, id)?;
+            let catalogue = Catalogue::of(std::iter::once(effect));
+            outputs.tell(&args.json, &catalogue, || card(effect))
+        }
     }
 }
 

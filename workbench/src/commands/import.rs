@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
             "{name}: exists already; give a folder without a campaign"
         )));
     }
-    let files = Files::sort(&args.files)?;
+    let mut files = Files::sort(&args.files)?;
     let model = args.model.load()?;
     let named = dialogue::named(&args.maps)?;
     let agreed = |found: Option<Columns>| {
@@ -80,11 +80,12 @@ pub fn run(args: &Args) -> Result<(), Error> {
             file: path_from(&args.out, file),
             mapping: agreed(columns(file)?)?,
             conditions: conditions(args, file)?,
+            then: Vec::new(),
             cuts: Vec::new(),
         });
     }
     let name = args.out.file_name().unwrap_or(args.out.as_os_str());
-    let (text, campaign) = campaign(
+    let (text, campaign, notes) = campaign(
         &args.out,
         &name.to_string_lossy(),
         files.can(&args.out, signals.as_ref()).as_deref(),
@@ -96,7 +97,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         source,
     })?;
     output::write_file(&manifest, text.as_bytes())?;
-    output::print(&told(args, &campaign.runs))
+    output::print(&told(args, &notes, &campaign.runs))
 }
 
 /// The test stand of a log.
@@ -122,8 +123,8 @@ fn conditions(args: &Args, file: &Path) -> Result<Conditions, Error> {
     })
 }
 
-fn told(args: &Args, runs: &[Run]) -> String {
-    let mut text = String::new();
+fn told(args: &Args, notes: &[String], runs: &[Run]) -> String {
+    let mut text: String = notes.iter().map(|note| wrapped(note) + "\n").collect();
     for run in runs {
         let seconds = run.duration_s();
         let run = format!(

@@ -5,7 +5,7 @@ use schemars::{JsonSchema, Schema};
 
 use crate::base_fit::ShownBaseFit;
 use crate::commands::fleet::Line;
-use crate::commands::{changes, loop_, tune};
+use crate::commands::{changes, effects, loop_, tune};
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::explanation::{Diagnosis, Explanation};
@@ -16,7 +16,7 @@ use crate::paper::Paper;
 type MakeSchema = fn() -> Schema;
 
 /// Commands with the option `--json`, and the schema of their document.
-const DOCUMENTS: [(&str, MakeSchema); 8] = [
+const DOCUMENTS: [(&str, MakeSchema); 9] = [
     ("compare", schema::<Comparison>),
     ("diagnose", schema::<Diagnosis>),
     ("explain", schema::<Explanation>),
@@ -25,6 +25,7 @@ const DOCUMENTS: [(&str, MakeSchema); 8] = [
     ("loop", schema::<loop_::Driven<'static>>),
     ("tune", schema::<tune::Tuned>),
     ("paper", schema::<Paper>),
+    ("effects", schema::<effects::Catalogue>),
 ];
 
 /// Commands with the option `--jsonl`, and the schema of a line.

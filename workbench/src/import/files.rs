@@ -16,6 +16,8 @@ pub struct Files {
     pub logs: Vec<PathBuf>,
     /// The DBC file.
     pub dbc: Option<PathBuf>,
+    /// Whether the frames of a bus are those of the DBC file only as groups of J1939.
+    pub is_j1939: bool,
 }
 
 /// The columns of a log, or the signals of a bus.
@@ -51,6 +53,7 @@ impl Files {
         Ok(Self {
             logs: logs.into_iter().cloned().collect(),
             dbc: dbcs.first().map(|dbc| (*dbc).clone()),
+            is_j1939: false,
         })
     }
 
@@ -58,7 +61,7 @@ impl Files {
     ///
     /// # Errors
     /// If a file cannot be read, or there is no log of a bus.
-    pub fn signals(&self) -> Result<Option<Columns>, Error> {
+    pub fn signals(&mut self) -> Result<Option<Columns>, Error> {
         let Some(dbc) = &self.dbc else {
             return Ok(None);
         };
@@ -66,6 +69,7 @@ impl Files {
         let mut unknown_frames = 0;
         for file in self.logs.iter().filter(|file| survey::is_bus(file)) {
             let found = survey::bus_signals(file, dbc)?;
+            self.is_j1939 |= found.is_j1939;
             unknown_frames += found.unknown_frames;
             for column in found.columns {
                 let is_new = columns.iter().all(|known| known.name != column.name);
@@ -75,7 +79,7 @@ impl Files {
         let name = dbc.display();
         if columns.is_empty() {
             return Err(Error::Usage(format!(
-                "{name}: describes a bus, but no log of a bus (.log, .asc, .blf) is given"
+                "{name}: describes a bus, but no log of a bus (.log, .asc, .blf, frames in MDF or CSV) is given"
             )));
         }
         let heading = match unknown_frames {
@@ -84,11 +88,17 @@ impl Files {
                 format!("{name} ({frames} frames of messages that it does not define are ignored)")
             }
         };
+        let by_group = "assumed: messages with 29 bits are groups of J1939: other priorities and source addresses than \
+                        those of the DBC are accepted";
         Ok(Some(Columns {
             heading,
             kind: Kind::Signals,
             columns,
-            notes: Vec::new(),
+            notes: self
+                .is_j1939
+                .then(|| by_group.to_owned())
+                .into_iter()
+                .collect(),
         }))
     }
 
@@ -96,8 +106,12 @@ impl Files {
     #[must_use]
     pub fn can(&self, folder: &Path, signals: Option<&Mapping>) -> Option<String> {
         let (dbc, signals) = self.dbc.as_ref().zip(signals)?;
+        let identifiers = match self.is_j1939 {
+            true => "identifiers = \"j1939\"\n",
+            false => "",
+        };
         Some(format!(
-            "\n[can]\ndbc = {}\n\n[can.signals]\n{}",
+            "\n[can]\ndbc = {}\n{identifiers}\n[can.signals]\n{}",
             quoted(&path_from(folder, dbc)),
             lines(signals)
         ))

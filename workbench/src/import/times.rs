@@ -223,46 +223,30 @@ pub fn time(columns: &[LogColumn], lift: Option<&LogColumn>) -> Result<Option<Ta
         reason: reason.to_owned(),
         is_assumed,
     };
-    let rises = |column: &&LogColumn| {
-        let known: Vec<f64> = column
-            .values
-            .iter()
-            .copied()
-            .filter(|value| !value.is_nan())
-            .collect();
-        known.len() > 1 && known.windows(2).all(|pair| pair[1] > pair[0])
+    let is_base = |column: &&LogColumn| column.times.as_ref() == Some(&column.name);
+    // Times that do not rise are read all the same: the reader names the line that is wrong.
+    let is_said = |column: &&LogColumn| {
+        column.is_clock || is_time_name(&column.name) || unit_of_time(column).is_some()
     };
-    let clock = columns.iter().find(|column| column.is_clock);
-    let named = columns
-        .iter()
-        .filter(rises)
-        .find(|column| is_time_name(&column.name));
-    let seconds = || {
-        columns
-            .iter()
-            .filter(rises)
-            .find(|column| unit_of_time(column).is_some())
+    let base = lift.and_then(|lift| lift.times.as_ref());
+    let base = columns.iter().find(|column| Some(&column.name) == base);
+    let base = base.or_else(|| columns.iter().find(is_base));
+    let Some(column) = base.or_else(|| columns.iter().find(is_said)) else {
+        return Ok(None);
     };
-    let of_lift = lift.and_then(|lift| lift.times.as_ref());
-    let of_lift = columns.iter().find(|column| Some(&column.name) == of_lift);
-    let clock = of_lift.filter(|column| column.is_clock).or(clock);
-    let number = match of_lift {
-        Some(column) => Some(column).filter(|column| !column.is_clock),
-        None => named.or_else(seconds),
-    };
-    if let Some(column) = number {
-        let name = &column.name;
-        if let Some(unit) = unit_of_time(column) {
-            let size = unit_size_s(unit);
-            check_unit(column, unit, size)?;
-            let source = format!("{name}:{unit}");
-            return Ok(Some(taken(source, "rises from row to row", false)));
-        }
-        let (unit, reason) = assumed_unit(column)?;
-        let source = unit.map_or_else(|| name.clone(), |unit| format!("{name}:{unit}"));
-        return Ok(Some(taken(source, &reason, true)));
+    if column.is_clock {
+        let reason = "dates or times of day";
+        return Ok(Some(taken(column.name.clone(), reason, false)));
     }
-    Ok(clock.map(|column| taken(column.name.clone(), "dates or times of day", false)))
+    let name = &column.name;
+    if let Some(unit) = unit_of_time(column) {
+        check_unit(column, unit, unit_size_s(unit))?;
+        let source = format!("{name}:{unit}");
+        return Ok(Some(taken(source, "times with a unit", false)));
+    }
+    let (unit, reason) = assumed_unit(column)?;
+    let source = unit.map_or_else(|| name.clone(), |unit| format!("{name}:{unit}"));
+    Ok(Some(taken(source, &reason, true)))
 }
 
 impl Mapping {

@@ -17,8 +17,7 @@
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
-use crate::bus_log::frame::{Frame, Id, MOST_BYTES};
-use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
 use crate::bus_log::line::{Line, Word, lines};
 
 /// First words of lines that contain no event.
@@ -89,15 +88,13 @@ fn of_heading(line: &Line<'_>) -> Result<Notation, CampaignError> {
         "dec" => 10,
         _ => return Err(line.fault(base, 0, "is not a base", mend)),
     };
-    let relative = match line.get(3) {
-        None => false,
-        Some(Word {
-            text: "absolute", ..
-        }) => false,
-        Some(Word {
-            text: "relative", ..
-        }) => true,
-        Some(other) => return Err(line.fault(other, 0, "is not a kind of time stamp", mend)),
+    let relative = match line.text(3) {
+        "" | "absolute" => false,
+        "relative" => true,
+        _ => {
+            let kind = line.word(3, "kind of time stamp")?;
+            return Err(line.fault(kind, 0, "is not a kind of time stamp", mend));
+        }
     };
     Ok(Notation { radix, relative })
 }
@@ -131,10 +128,9 @@ fn classical<'a>(
     let length = number(line, count, radix, MOST_BYTES as u32)? as usize;
     // Up to 15 it is a data length code as in classical frames; some tools write it for CAN FD as well.
     let is_flexible = length > MOST_CODE;
-    let length = if is_flexible {
-        length
-    } else {
-        length.min(MOST_CLASSICAL)
+    let length = match is_flexible {
+        true => length,
+        false => length.min(MOST_CLASSICAL),
     };
     data(line, 6, radix, &mut bytes[..length])?;
     Ok(Some((line.text(1), id, length)))

@@ -15,8 +15,7 @@ use hitch_input::file_kind;
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
-use crate::bus_log::frame::{Frame, Id, MOST_BYTES};
-use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
 use crate::little_endian::{u16_at, u32_at, u64_at};
 
 /// Begin of an object.
@@ -46,7 +45,6 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), Campaig
         source.error(what, mend)
     };
     let start = start(&bytes).map_err(fault)?;
-    let mut channels = Channels::default();
     let mut content = Vec::new();
     let mut objects = Objects {
         bytes: &bytes,
@@ -54,7 +52,7 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), Campaig
     };
     while let Some(object) = objects.next().map_err(fault)? {
         if object.kind != Object::CONTAINER {
-            pass(&object, &mut channels, sink, source)?;
+            pass(&object, sink, source)?;
             continue;
         }
         unpack(object.body(BASE), &mut content).map_err(fault)?;
@@ -63,7 +61,7 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), Campaig
             at: 0,
         };
         while let Some(object) = inner.next().map_err(fault)? {
-            pass(&object, &mut channels, sink, source)?;
+            pass(&object, sink, source)?;
         }
         let read = inner.at;
         content.drain(..read);
@@ -170,21 +168,6 @@ fn unpack(container: &[u8], content: &mut Vec<u8>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The names of the channels, which are numbers.
-#[derive(Default)]
-struct Channels(Vec<(u16, String)>);
-
-impl Channels {
-    fn name(&mut self, number: u16) -> &str {
-        let known = self.0.iter().position(|(known, _)| *known == number);
-        let index = known.unwrap_or_else(|| {
-            self.0.push((number, number.to_string()));
-            self.0.len() - 1
-        });
-        &self.0[index].1
-    }
-}
-
 /// The parts of a data frame.
 struct Parts<'b> {
     time_s: f64,
@@ -246,7 +229,6 @@ impl<'b> Object<'b> {
 /// Passes the frame of an object to a sink, if it has one that is wanted.
 fn pass(
     object: &Object<'_>,
-    channels: &mut Channels,
     sink: &mut dyn FrameSink,
     source: &SourceFile,
 ) -> Result<(), CampaignError> {
@@ -261,13 +243,13 @@ fn pass(
         );
         return Err(source.error(what, "copy or log it again"));
     };
-    let channel = channels.name(parts.channel);
-    if !sink.wants(channel, id) {
+    let channel = parts.channel.to_string();
+    if !sink.wants(&channel, id) {
         return Ok(());
     }
     sink.take(&Frame {
         time_s: parts.time_s,
-        channel,
+        channel: &channel,
         id,
         data: parts.data,
         byte: 0,

@@ -13,8 +13,7 @@
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
-use crate::bus_log::frame::{Frame, Id, MOST_BYTES};
-use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
 use crate::bus_log::line::{Line, Word, lines};
 
 /// Digits of an identifier of 11 bits, and of 29.

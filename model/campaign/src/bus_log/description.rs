@@ -1,5 +1,7 @@
 //! The signals of a bus, as described by a DBC.
 
+use std::ops::RangeInclusive;
+
 use can_dbc::{
     AttributeValue, ByteOrder, Dbc, DbcError, Message, MessageId, MultiplexIndicator, NumericValue,
     SignalExtendedValueType, ValueType,
@@ -9,10 +11,10 @@ use hitch_input::naming::offer_names;
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
-use crate::bus_log::frame::{Id, MOST_BYTES};
-use crate::bus_log::signal::{Bits, Kind, Signal};
+use crate::bus_log::frame::{Id, MOST_BYTES, group};
+use crate::bus_log::signal::{Bits, Kind, Selector, Signal};
 use crate::scale::Scale;
-use crate::table::{Column, TIMES};
+use crate::table::{COLUMNS, Column, TIMES};
 
 /// The description of the project's ECU.
 const OF_ECU: &str = include_str!("../../../../firmware/hitch.dbc");
@@ -36,6 +38,8 @@ pub enum Match {
 #[derive(Debug, Clone)]
 pub struct Description {
     dbc: Dbc,
+    /// Whether all messages with 29 bits are those of J1939, even without an attribute.
+    is_j1939: bool,
 }
 
 impl Description {
@@ -45,34 +49,55 @@ impl Description {
     /// The text is not a DBC, with the position.
     pub fn read(source: &SourceFile) -> Result<Self, CampaignError> {
         let dbc = Dbc::try_from(source.text.as_str()).map_err(|error| not_dbc(source, &error))?;
-        Ok(Self { dbc })
+        let is_j1939 = false;
+        Ok(Self { dbc, is_j1939 })
+    }
+
+    /// The same description, of a bus of J1939 if `is_j1939`.
+    pub fn of_j1939(self, is_j1939: bool) -> Self {
+        Self { is_j1939, ..self }
+    }
+
+    /// Whether frames of a log come only by the groups of messages: from other addresses, or with other priorities. An
+    /// identifier or a group of several messages tells nothing.
+    pub fn is_heard_by_group(&self, ids: &[Id]) -> bool {
+        let exact: Vec<Match> = self.messages().iter().map(|m| self.matching(m)).collect();
+        let is_known = |id: &Id| exact.iter().any(|matching| matching.sender(*id).is_some());
+        let others: Vec<u32> = ids
+            .iter()
+            .filter(|id| !is_known(id))
+            .filter_map(|id| id.group())
+            .collect();
+        let raw = |matching: &Match| match matching {
+            Match::Identifier(id) if !ids.contains(id) => id.group(),
+            _ => None,
+        };
+        let groups: Vec<u32> = exact.iter().filter_map(raw).collect();
+        let is_only = |group: &u32| groups.iter().filter(|other| *other == group).count() == 1;
+        groups
+            .iter()
+            .any(|group| is_only(group) && others.contains(group))
     }
 
     /// The description of the project's ECU.
     pub fn of_ecu() -> Self {
         let dbc = Dbc::try_from(OF_ECU).expect("a test reads the project's own description");
-        Self { dbc }
+        let is_j1939 = false;
+        Self { dbc, is_j1939 }
     }
 
     /// The message with this name.
     pub fn message(&self, name: &str) -> Result<&Message, Fault> {
-        let found = self
-            .dbc
-            .messages
-            .iter()
-            .find(|message| message.name == name);
+        let mut messages = self.messages().iter();
+        let found = messages.find(|message| message.name == name);
         found.ok_or_else(|| {
-            let names: Vec<&str> = self.names();
+            let messages = self.messages().iter();
+            let names: Vec<&str> = messages.map(|message| message.name.as_str()).collect();
             (
                 format!("the DBC has no message {}", quote(name)),
                 offer_names(name, &names),
             )
         })
-    }
-
-    fn names(&self) -> Vec<&str> {
-        let messages = self.dbc.messages.iter();
-        messages.map(|message| message.name.as_str()).collect()
     }
 
     /// All messages.
@@ -90,13 +115,15 @@ impl Description {
     pub fn matching(&self, message: &Message) -> Match {
         match message.id {
             MessageId::Standard(raw) => Match::Identifier(Id::Standard(raw.into())),
-            MessageId::Extended(raw) if self.is_j1939(message) => Match::Group(group(raw)),
+            MessageId::Extended(raw) if self.is_j1939 || self.is_marked(message) => {
+                Match::Group(group(raw))
+            }
             MessageId::Extended(raw) => Match::Identifier(Id::Extended(raw)),
         }
     }
 
     /// The attribute by which Vector's tools mark messages of J1939.
-    fn is_j1939(&self, message: &Message) -> bool {
+    fn is_marked(&self, message: &Message) -> bool {
         const NUMBER: u64 = 3;
         match self
             .dbc
@@ -112,11 +139,8 @@ impl Description {
     pub fn signal(&self, message: &Message, name: &str, column: &Column) -> Result<Signal, Fault> {
         let found = message.signals.iter().find(|signal| signal.name == name);
         let signal = found.ok_or_else(|| {
-            let names: Vec<&str> = message
-                .signals
-                .iter()
-                .map(|signal| signal.name.as_str())
-                .collect();
+            let signals = message.signals.iter();
+            let names: Vec<&str> = signals.map(|signal| signal.name.as_str()).collect();
             (
                 format!("message {} has no signal {}", message.name, quote(name)),
                 offer_names(name, &names),
@@ -142,7 +166,7 @@ impl Description {
             factor: signal.factor * factor,
             offset: signal.offset * factor + offset,
             has_reserved_values: matches!(self.matching(message), Match::Group(_)),
-            selected_by: self.selector(message, signal, &name)?,
+            selected_by: self.selectors(message, signal, &name)?,
             name,
         })
     }
@@ -171,6 +195,14 @@ impl Description {
         }
     }
 
+    /// Why a signal in a unit of a run cannot be decoded; `None` for a signal of another quantity.
+    pub fn why_not(&self, message: &Message, signal: &can_dbc::Signal) -> Option<String> {
+        let mut columns = COLUMNS.iter();
+        let column = columns.find(|column| conversion("", &signal.unit, column).is_ok())?;
+        let fault = self.signal(message, &signal.name, column).err()?;
+        Some(fault.0)
+    }
+
     fn kind(&self, message: &Message, signal: &can_dbc::Signal) -> Kind {
         let extended = self
             .dbc
@@ -183,36 +215,54 @@ impl Description {
         }
     }
 
-    /// The bits of the multiplexer that select a signal.
-    fn selector(
+    /// The multiplexers that select a signal, each of which may be selected by another one.
+    fn selectors(
         &self,
         message: &Message,
         signal: &can_dbc::Signal,
         name: &str,
-    ) -> Result<Option<(Bits, u64)>, Fault> {
-        let value = match signal.multiplexer_indicator {
-            MultiplexIndicator::MultiplexedSignal(value) => value,
-            MultiplexIndicator::Plain | MultiplexIndicator::Multiplexor => return Ok(None),
-            MultiplexIndicator::MultiplexorAndMultiplexedSignal(_) => {
-                return Err(wrong(name, "is multiplexed in more than one step"));
+    ) -> Result<Vec<Selector>, Fault> {
+        let mut selectors = Vec::new();
+        let mut selected = signal;
+        while let Some((switch, values)) = self.selection(message, selected) {
+            let is_switch = |other: &&can_dbc::Signal| match switch {
+                Some(name) => other.name == name,
+                None => other.multiplexer_indicator == MultiplexIndicator::Multiplexor,
+            };
+            let found = message.signals.iter().find(is_switch);
+            selected = found.ok_or_else(|| wrong(name, "is multiplexed without a multiplexor"))?;
+            let bits = bits(name, selected)?;
+            selectors.push(Selector { bits, values });
+            if selectors.len() > message.signals.len() {
+                return Err(wrong(name, "has multiplexors that select each other"));
             }
-        };
-        match self.dbc.message_multiplexor_switch(message.id) {
-            Ok(Some(switch)) => Ok(Some((bits(name, switch)?, value))),
-            Ok(None) => Err(wrong(name, "is multiplexed without a multiplexor")),
-            Err(_) => Err(wrong(name, "is multiplexed in more than one step")),
         }
+        Ok(selectors)
     }
-}
 
-/// The parameter group number of a J1939 identifier: without the destination address, which groups in the lower half
-/// have.
-pub fn group(id: u32) -> u32 {
-    const FIRST_BROADCAST: u32 = 240;
-    let group = id >> 8 & 0x3_FFFF;
-    match group >> 8 & 0xFF {
-        format if format < FIRST_BROADCAST => group & 0x3_FF00,
-        _ => group,
+    /// The name of the multiplexor of a signal, `None` for that of the message, and its values that select the signal: of
+    /// `SG_MUL_VAL_`, else of the signal.
+    fn selection(
+        &self,
+        message: &Message,
+        signal: &can_dbc::Signal,
+    ) -> Option<(Option<&str>, Vec<RangeInclusive<u64>>)> {
+        let mut extended = self.dbc.extended_multiplex.iter();
+        let ranges = extended
+            .find(|ranges| ranges.message_id == message.id && ranges.signal_name == signal.name);
+        if let Some(ranges) = ranges {
+            let values = ranges.mappings.iter();
+            let values = values.map(|range| range.min_value..=range.max_value);
+            let switch = &ranges.multiplexor_signal_name;
+            return Some((Some(switch), values.collect()));
+        }
+        match signal.multiplexer_indicator {
+            MultiplexIndicator::MultiplexedSignal(value)
+            | MultiplexIndicator::MultiplexorAndMultiplexedSignal(value) => {
+                Some((None, vec![value..=value]))
+            }
+            MultiplexIndicator::Plain | MultiplexIndicator::Multiplexor => None,
+        }
     }
 }
 
@@ -277,7 +327,7 @@ fn not_dbc(source: &SourceFile, error: &DbcError) -> InputError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{LIFT, OIL_TEMPERATURE, column};
+    use crate::table::{LIFT, column};
 
     #[test]
     fn the_project_s_own_description_is_read() {
@@ -294,22 +344,10 @@ mod tests {
 
     #[test]
     fn units_are_converted_or_refused() {
-        let close = |unit, wanted, expected: f64| {
-            let (factor, _) = conversion("M.S", unit, column(wanted).unwrap()).unwrap();
-            assert!((factor / expected - 1.0).abs() < 1e-12, "{unit}: {factor}");
-        };
-        close("mA", LIFT, 1e-3);
-        close("kPa", "cylinder_pressure_bar", 1e-2);
-        close("°", "rocker_angle_deg", 1.0);
-        close("Deg", "rocker_angle_deg", 1.0);
-        close("L/min", "flow_lpm", 1.0);
-        close("C", OIL_TEMPERATURE, 1.0);
-        close("degF", OIL_TEMPERATURE, 5.0 / 9.0);
+        let of = |unit, wanted| conversion("M.S", unit, column(wanted).unwrap());
+        assert_eq!(of("mA", LIFT), Ok((1e-3, 0.0)));
         for unit in ["", "bar", "%", "parsec"] {
-            assert!(
-                conversion("M.S", unit, column(LIFT).unwrap()).is_err(),
-                "{unit}"
-            );
+            assert!(of(unit, LIFT).is_err(), "{unit}");
         }
     }
 

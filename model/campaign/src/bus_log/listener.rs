@@ -6,8 +6,7 @@ use hitch_input::source_file::SourceFile;
 use crate::CampaignError;
 use crate::bus_log::clock::Clock;
 use crate::bus_log::description::Match;
-use crate::bus_log::frame::{Frame, Id};
-use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::frame::{Frame, FrameSink, Id, group};
 use crate::bus_log::signal::Signal;
 use crate::series::Series;
 use crate::table::Column;
@@ -84,6 +83,11 @@ impl<'s> Listener<'s> {
             clocks: Vec::new(),
             first_s: None,
         }
+    }
+
+    /// Time stamp of time 0, s.
+    pub fn origin_s(&self) -> f64 {
+        self.first_s.unwrap_or_default()
     }
 
     /// The received series of each column.
@@ -217,14 +221,12 @@ impl Received<'_> {
                 continue;
             };
             let column = sampled.column;
-            if !value.is_nan() && !column.range.contains(&value) {
-                let what = format!(
-                    "{value} of {} cannot be {}",
-                    sampled.signal.name, column.name
-                );
-                let (low, high) = (column.range.start(), column.range.end());
-                let mend = format!("the range is {low} to {high}: check scale and unit in the dbc");
-                return Err(fault((what, mend)));
+            if !value.is_nan() {
+                column.checked(value).map_err(|(_, range)| {
+                    let signal = &sampled.signal.name;
+                    let what = format!("{value} of {signal} cannot be {}", column.name);
+                    fault((what, format!("{range}: check scale and unit in the dbc")))
+                })?;
             }
             series.push(time_s, value, frame.byte);
         }
@@ -237,9 +239,9 @@ impl Match {
     pub fn sender(self, id: Id) -> Option<Option<u8>> {
         match (self, id) {
             (Self::Identifier(known), id) => (known == id).then_some(None),
-            (Self::Group(known), Id::Extended(raw)) => (crate::bus_log::description::group(raw)
-                == known)
-                .then_some(Some(raw.to_le_bytes()[0])),
+            (Self::Group(known), Id::Extended(raw)) => {
+                (group(raw) == known).then_some(Some(raw.to_le_bytes()[0]))
+            }
             (Self::Group(_), Id::Standard(_)) => None,
         }
     }

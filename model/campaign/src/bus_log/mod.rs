@@ -1,7 +1,7 @@
-//! Runs from logs of a CAN bus: candump's `.log`, and Vector's `.asc` and `.blf`, decoded by a description of the bus (DBC).
+//! Runs from logs of a CAN bus: candump's `.log`, Vector's `.asc` and `.blf`, frames in MDF and tables of them, decoded by a description of the bus (DBC).
 //!
 //! ```text
-//! log --(candump, asc, blf)--> frames --(listener: signals of the DBC)--> series of each column --> rows of a run
+//! log --(candump, asc, blf, mdf, table)--> frames --(listener: signals of the DBC)--> series of each column --> rows of a run
 //! ```
 //!
 //! A row is a sample of the lift current. Signals of other messages are interpolated linearly to its time, if a sample
@@ -12,9 +12,10 @@ mod candump;
 mod clock;
 mod description;
 mod frame;
-mod frame_sink;
+mod frame_table;
 mod line;
 mod listener;
+mod mdf_frames;
 mod settings;
 mod signal;
 mod survey;
@@ -26,9 +27,9 @@ pub use settings::BusSettings;
 pub use survey::{Signals, signals};
 
 use crate::CampaignError;
-use crate::series::{Series, values};
-use crate::table::{Cells, LIFT, LOWER, Samples, TIME, Table};
-use frame_sink::FrameSink;
+use crate::series::Series;
+use crate::table::{Cells, LIFT, LOWER, Table};
+use frame::FrameSink;
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use listener::Listener;
@@ -42,16 +43,25 @@ pub enum Format {
     Asc,
     /// Vector binary.
     Blf,
+    /// MDF with frames.
+    Mdf,
+    /// Text table with a frame in each row.
+    Table,
 }
 
 impl Format {
-    /// The format by the extension of the file name; `None` for other files.
+    /// The format by the extension of the file name, and the contents of MDF and tables; `None` for other files.
     pub fn of(path: &Path) -> Option<Self> {
         let end = path.extension()?.to_str()?.to_ascii_lowercase();
         match end.as_str() {
             "log" => Some(Self::Candump),
             "asc" => Some(Self::Asc),
             "blf" => Some(Self::Blf),
+            "mf4" | "mdf" => mdf_frames::is_one(path).then_some(Self::Mdf),
+            "csv" | "txt" => {
+                let source = SourceFile::read_any(path).ok()?;
+                frame_table::is_one(&source.text).then_some(Self::Table)
+            }
             _ => None,
         }
     }
@@ -62,8 +72,8 @@ impl Format {
     /// The file cannot be read, or is not text.
     pub fn source(self, path: &Path) -> Result<SourceFile, CampaignError> {
         match self {
-            Self::Candump | Self::Asc => SourceFile::read_any(path),
-            Self::Blf => Ok(SourceFile::named(path)),
+            Self::Candump | Self::Asc | Self::Table => SourceFile::read_any(path),
+            Self::Blf | Self::Mdf => Ok(SourceFile::named(path)),
         }
     }
 }
@@ -98,23 +108,14 @@ pub fn read(
     read_frames(source, format, &mut listener)?;
     let rows = required(source, &listener, settings, LIFT)?;
     required(source, &listener, settings, LOWER)?;
-    let within_s = rows.median_step_s() / 2.0;
-    let samples = |name, values| Samples {
-        name,
-        cell: 0,
-        values,
-    };
-    let mut columns = vec![samples(TIME, rows.times_s.clone())];
-    for (column, series) in listener.series() {
-        let values = values(column.name, series, &rows.times_s, within_s);
-        columns.push(samples(column.name, values));
-    }
-    let bytes = rows.bytes.clone();
+    let series = listener.series();
+    let series = series.map(|(column, series)| (column.name, 0, series));
     let cells = match format {
-        Format::Candump | Format::Asc => Cells::OneALine,
-        Format::Blf => Cells::Nowhere,
+        Format::Candump | Format::Asc | Format::Table => Cells::OneALine,
+        Format::Blf | Format::Mdf => Cells::Nowhere,
     };
-    Table::new(Arc::clone(source), columns, bytes, cells)
+    let table = Table::of_series(source, (0, rows), series, cells)?;
+    Ok(table.since(listener.origin_s()))
 }
 
 /// Passes the frames of a log to a sink.
@@ -127,6 +128,8 @@ fn read_frames(
         Format::Candump => candump::read(source, sink),
         Format::Asc => asc::read(source, sink),
         Format::Blf => blf::read(source, sink),
+        Format::Mdf => mdf_frames::read(source, sink),
+        Format::Table => frame_table::read(source, sink),
     }
 }
 

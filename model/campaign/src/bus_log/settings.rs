@@ -5,6 +5,7 @@
 //! dbc = "rig.dbc"                           # description of the bus
 //! channel = "can0"                          # bus, if the log has several
 //! source = 128                              # source address, if several nodes send the same message (J1939)
+//! identifiers = "j1939"                     # those of 29 bits are groups, from any source address; "exact" by default
 //! clock = "SampleTime"                      # signal with a message's sampling time, if it has one
 //!
 //! [can.signals]
@@ -82,7 +83,14 @@ impl BusSettings {
         let Some(table) = top.table("can")? else {
             return Ok(Self::default());
         };
-        table.only(&["dbc", "channel", "source", "clock", "signals"])?;
+        table.only(&[
+            "dbc",
+            "channel",
+            "source",
+            "identifiers",
+            "clock",
+            "signals",
+        ])?;
         let own = match table.text("dbc")? {
             Some(_) => Some(SourceFile::read_any(&file_in(dir, &table, "dbc")?)?),
             None => None,
@@ -93,7 +101,16 @@ impl BusSettings {
                 "assign the columns under [can.signals], as in lift_current_a = \"Message.Signal\"";
             return Err(table.error("[can] has a dbc but no signals", mend));
         }
+        let is_j1939 = match table.text("identifiers")? {
+            None | Some("exact") => false,
+            Some("j1939") => true,
+            Some(other) => {
+                let what = format!("identifiers {} are not known", quote(other));
+                return Err(table.error_at("identifiers", what, "use \"exact\" or \"j1939\""));
+            }
+        };
         let description = own.as_ref().map(Description::read).transpose()?;
+        let description = description.map(|description| description.of_j1939(is_j1939));
         let clock = table.text("clock")?;
         let mut settings = Self::of_ecu(clock.unwrap_or(CLOCK));
         if description.is_some() {

@@ -1,5 +1,7 @@
 //! A signal in the data of a frame.
 
+use std::ops::RangeInclusive;
+
 /// Number format of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -48,6 +50,15 @@ impl Bits {
     }
 }
 
+/// A multiplexer, and its values that select a signal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Selector {
+    /// Position of the multiplexer.
+    pub bits: Bits,
+    /// Ranges of the values.
+    pub values: Vec<RangeInclusive<u64>>,
+}
+
 /// A signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signal {
@@ -63,8 +74,8 @@ pub struct Signal {
     pub offset: f64,
     /// Values from `0xFB` in the highest byte on mean that no data are available (J1939-71).
     pub has_reserved_values: bool,
-    /// Multiplexing: it is present only if the selector has this value.
-    pub selected_by: Option<(Bits, u64)>,
+    /// Multiplexing: it is present only if each of these selects it.
+    pub selected_by: Vec<Selector>,
 }
 
 /// The data are shorter than the signal.
@@ -74,10 +85,11 @@ pub struct TooShort;
 impl Signal {
     /// Its value in the data of a frame; `None` if it is not present, NaN if the sender has no valid value.
     pub fn value(&self, data: &[u8]) -> Result<Option<f64>, TooShort> {
-        if let Some((selector, selected)) = self.selected_by
-            && selector.of(data).ok_or(TooShort)? != selected
-        {
-            return Ok(None);
+        for selector in &self.selected_by {
+            let value = selector.bits.of(data).ok_or(TooShort)?;
+            if !selector.values.iter().any(|values| values.contains(&value)) {
+                return Ok(None);
+            }
         }
         let counts = self.bits.of(data).ok_or(TooShort)?;
         if self.has_reserved_values && self.is_reserved(counts) {
@@ -121,7 +133,7 @@ mod tests {
             factor: 0.5,
             offset: -10.0,
             has_reserved_values: false,
-            selected_by: None,
+            selected_by: Vec::new(),
         }
     }
 
@@ -151,7 +163,11 @@ mod tests {
         of_j1939.has_reserved_values = true;
         assert_eq!(of_j1939.value(&[0xFF, 0xFA]), Ok(Some(32_117.5)));
         assert!(of_j1939.value(&[0, 0xFB]).unwrap().unwrap().is_nan());
-        of_j1939.selected_by = Some((bits(16, 2, false), 1));
+        of_j1939.selected_by = vec![Selector {
+            bits: bits(16, 2, false),
+            values: vec![1..=1, 3..=3],
+        }];
+        assert_eq!(of_j1939.value(&[0, 0, 3]), Ok(Some(-10.0)));
         assert_eq!(of_j1939.value(&[0, 0, 2]), Ok(None));
         assert_eq!(of_j1939.value(&[0, 0, 1]), Ok(Some(-10.0)));
     }

@@ -6,10 +6,8 @@ use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
 use crate::bus_log::description::Description;
-use crate::bus_log::frame::{Frame, Id};
-use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::frame::{Frame, FrameSink, Id};
 use crate::bus_log::{Format, read_frames};
-use crate::scale::spelling;
 use crate::survey::LogColumn;
 use crate::table::COLUMNS;
 
@@ -37,6 +35,8 @@ pub struct Signals {
     pub columns: Vec<LogColumn>,
     /// Frames of messages that the description lacks.
     pub unknown_frames: usize,
+    /// Whether its frames are those of the description only as groups of J1939.
+    pub is_j1939: bool,
 }
 
 /// Searches a log for the signals of a description.
@@ -51,6 +51,9 @@ pub fn signals(
     let description = Description::read(dbc)?;
     let mut counts = IdentifierCounts::default();
     read_frames(source, format, &mut counts)?;
+    let ids: Vec<Id> = counts.frames.keys().copied().collect();
+    let is_j1939 = description.is_heard_by_group(&ids);
+    let description = description.of_j1939(is_j1939);
     let mut columns = Vec::new();
     let mut is_heard = false;
     let mut unknown = counts.frames.clone();
@@ -64,12 +67,13 @@ pub fn signals(
         unknown.retain(|id, _| !is_it(*id));
         for signal in &message.signals {
             let fits = |column| description.signal(message, &signal.name, column).is_ok();
-            if COLUMNS.iter().any(fits) {
+            let fault = description.why_not(message, signal);
+            if fault.is_some() || COLUMNS.iter().any(fits) {
+                let name = format!("{}.{}", message.name, signal.name);
                 columns.push(LogColumn {
-                    name: format!("{}.{}", message.name, signal.name),
-                    unit: Some(spelling(&signal.unit).to_owned()),
                     comment: description.comment(message, &signal.name).to_owned(),
-                    ..LogColumn::default()
+                    fault,
+                    ..LogColumn::new(&name, Some(&signal.unit))
                 });
             }
         }
@@ -91,5 +95,6 @@ pub fn signals(
     Ok(Signals {
         columns,
         unknown_frames: unknown.values().sum(),
+        is_j1939,
     })
 }

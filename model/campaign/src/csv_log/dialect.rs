@@ -5,11 +5,12 @@ use std::collections::HashSet;
 use csv::StringRecord;
 
 use crate::csv_log::clock::is_clock;
+use crate::csv_log::lvm;
 use crate::scale::is_unit;
 use crate::time_base::is_time_name;
 
-/// Possible separators, by priority: the comma, which may be a decimal mark, is last.
-pub const MARKS: [u8; 4] = [b'\t', b';', b'|', b','];
+/// Possible separators, by priority: the comma may be a decimal mark, and spaces, of which several are one, are within names.
+pub const MARKS: [u8; 5] = [b'\t', b';', b'|', b',', b' '];
 /// Number of rows that are searched for a header.
 const HEADER_WITHIN: usize = 200;
 
@@ -53,6 +54,10 @@ pub fn rows(text: &str, byte: usize, mark: u8) -> impl Iterator<Item = (usize, S
         let start = row
             .position()
             .map_or(0, |position| position.byte() as usize);
+        let row = match mark {
+            b' ' => row.iter().filter(|cell| !cell.is_empty()).collect(),
+            _ => row,
+        };
         (row_start(text, byte + start), row)
     })
 }
@@ -113,6 +118,9 @@ fn in_brackets(text: &str) -> Option<(&str, &str)> {
 impl Header {
     /// The row with the most of `names`; `None` if there is none.
     pub fn with_names(text: &str, names: &[&str]) -> Option<Self> {
+        if let Some(header) = lvm::header(text) {
+            return Some(header);
+        }
         let found = |row: &StringRecord| {
             let mut cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
             tell_apart(&mut cells);
@@ -133,7 +141,7 @@ impl Header {
 
     /// The row before the first samples, for a table with unknown names; `None` if the text is not a table.
     pub fn guessed(text: &str) -> Option<Self> {
-        MARKS.into_iter().find_map(|mark| {
+        let of_mark = |mark| {
             let rows: Vec<(usize, StringRecord)> =
                 rows(text, 0, mark).take(HEADER_WITHIN).collect();
             let width = usual_width(&rows)?;
@@ -148,10 +156,12 @@ impl Header {
             // Rows of units, comments and settings may be between them; of equal rows the uppermost has the names.
             let (byte, header) = possible.max_by_key(|(_, row)| names_in(row))?;
             Some(Self::at(text, mark, *byte, header))
-        })
+        };
+        lvm::header(text).or_else(|| MARKS.into_iter().find_map(of_mark))
     }
 
-    fn at(text: &str, mark: u8, byte: usize, row: &StringRecord) -> Self {
+    /// The header in this row, with the units below it.
+    pub fn at(text: &str, mark: u8, byte: usize, row: &StringRecord) -> Self {
         let mut cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
         let mut below = rows(text, byte, mark)
             .skip(1)
@@ -320,7 +330,7 @@ impl Decimals {
 
     /// The number in a cell, possibly infinite; `None` without digits.
     pub fn number(self, cell: &str) -> Option<f64> {
-        if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
+        if is_missing(cell) {
             return None;
         }
         if let Some(mark) = self.thousands {
@@ -340,6 +350,11 @@ impl Decimals {
             _ => None,
         }
     }
+}
+
+/// Whether a cell contains no value: no digits, or an error of a spreadsheet or of Windows (`#DIV/0!`, `-1.#IND`).
+pub fn is_missing(cell: &str) -> bool {
+    cell.contains('#') || !cell.bytes().any(|byte| byte.is_ascii_digit())
 }
 
 /// Whether a number has a mark before each three digits of its whole part, as in `1.234.567` and `1,234.5`.
@@ -399,7 +414,10 @@ mod tests {
         );
         assert_eq!(of(&["1,5"]).number("1.234"), None);
         assert_eq!(Decimals::ANY.number("1.234,5"), None);
-        assert_eq!(Decimals::ANY.number("inf"), None);
+        for missing in ["inf", "", "NaN", "#DIV/0!", "-1.#IND", "1.#QNAN", "#N/A"] {
+            assert!(is_missing(missing), "{missing}");
+            assert_eq!(Decimals::ANY.number(missing), None);
+        }
         let thousands = |cells: &[&str]| of(cells).of_column(cells).0.number("1,499");
         assert_eq!(thousands(&["0", "2", "1,499", "1,500"]), Some(1_499.0));
         assert_eq!(thousands(&["0", "2", "1,499", "1,5"]), Some(1.499));

@@ -4,11 +4,11 @@ use csv::StringRecord;
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
-use crate::csv_log::clock::{Times, is_clock};
-use crate::csv_log::dialect::{Decimals, Header, is_sample, rows};
-use crate::scale::spelling;
+use crate::csv_log::clock::{DateOrder, Times, is_clock, is_date};
+use crate::csv_log::dialect::{Decimals, Header, is_missing, is_sample, rows};
+use crate::csv_log::lvm::{self, Steps};
 use crate::table::cell_error;
-use crate::time_base::{Seen, bases, is_time_name, is_unit_of_time, notes, rises};
+use crate::time_base::{Seen, bases, is_time_name, notes, rises};
 
 /// Number of rows that are examined.
 const EXAMINED_ROWS: usize = 1_000;
@@ -17,16 +17,29 @@ const EXAMINED_ROWS: usize = 1_000;
 #[derive(Debug)]
 pub struct Layout<'s> {
     source: &'s SourceFile,
+    /// Times that are not in a column.
+    steps: Option<Steps>,
     /// Separator, names and units.
     pub header: Header,
     /// Number of cells of a row before its first named cell: 1 with row names.
     shift: usize,
     /// Form of the numbers, by column.
     pub decimals: Vec<Decimals>,
+    /// Order of day and month, by column.
+    pub orders: Vec<DateOrder>,
     /// The column of times of each column.
     pub bases: Vec<Option<usize>>,
     /// What was assumed, one line each.
     pub notes: Vec<String>,
+}
+
+/// The lines below the samples of a table, which are left out.
+#[derive(Debug, Default)]
+pub struct Below {
+    /// Their number.
+    pub lines: usize,
+    /// The fault of the first one.
+    pub fault: Option<CampaignError>,
 }
 
 /// A row of a table.
@@ -54,31 +67,51 @@ impl<'r> Row<'r> {
 impl<'s> Layout<'s> {
     /// Examines the first rows below a header.
     pub fn new(source: &'s SourceFile, header: Header) -> Self {
-        let first: Vec<StringRecord> = rows(&source.text, header.data_byte, header.mark)
-            .take(EXAMINED_ROWS)
-            .map(|(_, row)| row)
-            .filter(|row| !row.iter().all(str::is_empty))
-            .collect();
         let mut layout = Self {
             source,
+            steps: lvm::steps(&source.text, &header),
             shift: 0,
             decimals: Vec::new(),
+            orders: Vec::new(),
             bases: Vec::new(),
             notes: Vec::new(),
             header,
         };
+        let first: Vec<StringRecord> = layout
+            .records()
+            .take(EXAMINED_ROWS)
+            .map(|(_, row)| row)
+            .filter(|row| !row.iter().all(str::is_empty))
+            .collect();
         if layout.has_row_names(&first) {
             layout.shift = 1;
             let names = "the first cell of each row has no name above it: it is read as the name of the row";
             layout.notes.push(names.to_owned());
         }
         layout.decimals = layout.decimals_of(&first);
+        layout.orders = layout.orders_of(&first);
         let seen: Vec<Seen> = (0..layout.header.cells.len())
             .map(|column| layout.seen(column, &first))
             .collect();
         layout.bases = bases(&seen);
         layout.notes.extend(notes(&seen, &layout.bases));
+        layout.note_dates(&seen, &first);
         layout
+    }
+
+    /// The rows below the header, each with its byte offset and its time.
+    fn records(&self) -> impl Iterator<Item = (usize, StringRecord)> {
+        let rows = rows(&self.source.text, self.header.data_byte, self.header.mark);
+        rows.enumerate()
+            .map(|(index, (byte, row))| match self.steps {
+                Some(Steps { first_s, step_s }) => {
+                    let time = (first_s + step_s * index as f64).to_string();
+                    let others = row.iter().skip(1);
+                    let cells = std::iter::once(time.as_str()).chain(others);
+                    (byte, cells.collect())
+                }
+                None => (byte, row),
+            })
     }
 
     /// Whether each row has one more cell than the header, the first of which names the row.
@@ -112,8 +145,7 @@ impl<'s> Layout<'s> {
         let of_table = Decimals::of(columns.clone().flat_map(cells));
         let mut all = Vec::with_capacity(columns.len());
         for column in columns {
-            let has_digits = |cell: &&str| cell.bytes().any(|byte| byte.is_ascii_digit());
-            let filled: Vec<&str> = cells(column).filter(has_digits).collect();
+            let filled: Vec<&str> = cells(column).filter(|cell| !is_missing(cell)).collect();
             let (decimals, thousands) = of_table.of_column(&filled);
             if let Some(mark) = thousands {
                 let name = &self.header.cells[column].name;
@@ -126,14 +158,55 @@ impl<'s> Layout<'s> {
         all
     }
 
+    /// The order of the dates of each column, from all its rows.
+    fn orders_of(&mut self, first: &[StringRecord]) -> Vec<DateOrder> {
+        let mut orders = Vec::new();
+        for column in 0..self.header.cells.len() {
+            let cell = column + self.shift;
+            let mut begin = first.iter().filter_map(|row| row.get(cell));
+            if !begin.find(|cell| !is_missing(cell)).is_some_and(is_clock) {
+                orders.push(DateOrder::default());
+                continue;
+            }
+            let all: Vec<String> = self
+                .records()
+                .filter_map(|(_, row)| row.get(cell).map(str::to_owned))
+                .filter(|cell| is_clock(cell))
+                .collect();
+            let (order, matters) = DateOrder::of(all.iter().map(String::as_str));
+            if matters {
+                let name = &self.header.cells[column].name;
+                let order = order.name();
+                self.notes.push(format!(
+                    "assumed: the dates of \"{name}\" are {order}, in which they continue"
+                ));
+            }
+            orders.push(order);
+        }
+        orders
+    }
+
+    /// Notes the columns of dates beside times of day.
+    fn note_dates(&mut self, seen: &[Seen], first: &[StringRecord]) {
+        let Some(times) = seen.iter().find(|seen| seen.is_clock) else {
+            return;
+        };
+        for (column, dates) in seen.iter().enumerate() {
+            let mut cells = first.iter().map(|row| row.get(column + self.shift));
+            if cells.next().flatten().is_some_and(is_date) {
+                self.notes.push(format!(
+                    "the dates of \"{}\" are not read: the times of \"{}\" continue over midnight",
+                    dates.name, times.name
+                ));
+            }
+        }
+    }
+
     fn seen(&self, column: usize, first: &[StringRecord]) -> Seen {
         let cell = &self.header.cells[column];
-        let unit = cell.unit.as_deref().map(spelling);
         let cells = first.iter().filter_map(|row| row.get(column + self.shift));
-        let filled: Vec<&str> = cells
-            .filter(|cell| cell.bytes().any(|b| b.is_ascii_digit()))
-            .collect();
-        let mut times = Times::new(None);
+        let filled: Vec<&str> = cells.filter(|cell| !is_missing(cell)).collect();
+        let mut times = Times::new(None, self.orders[column]);
         let values: Vec<f64> = filled
             .iter()
             .filter_map(|text| match is_clock(text) {
@@ -142,27 +215,23 @@ impl<'s> Layout<'s> {
             })
             .collect();
         Seen {
-            name: cell.name.clone(),
-            is_in_time: unit.is_some_and(is_unit_of_time),
-            has_unit: unit.is_some(),
             is_clock: filled.first().is_some_and(|text| is_clock(text)),
-            samples: values.len(),
-            rises: rises(&values),
+            ..Seen::new(&cell.name, cell.unit.as_deref(), &values)
         }
     }
 
     /// Calls `take` for each row with a sample. A fault that it returns as a value is tolerated in the last row, as are
-    /// lines below the samples. Returns the number of lines that were left out.
+    /// lines below the samples. Returns these lines.
     ///
     /// # Errors
     /// The first row with more or fewer cells than the header, or fault of `take`.
     pub fn each_row(
         &self,
         mut take: impl FnMut(Row<'_>) -> Result<Option<CampaignError>, CampaignError>,
-    ) -> Result<usize, CampaignError> {
-        let mut fault: Option<CampaignError> = None;
-        let (mut left_out, mut only_remarks, mut samples) = (0, true, 0);
-        for (byte, record) in rows(&self.source.text, self.header.data_byte, self.header.mark) {
+    ) -> Result<Below, CampaignError> {
+        let mut below = Below::default();
+        let (mut only_remarks, mut samples) = (true, 0);
+        for (byte, record) in self.records() {
             if record.iter().all(str::is_empty) {
                 continue;
             }
@@ -175,29 +244,26 @@ impl<'s> Layout<'s> {
                 Some(misfit) => Some(misfit),
                 None => take(row)?,
             };
-            match (found, fault.take()) {
+            match (found, below.fault.take()) {
                 (None, Some(before)) => return Err(before),
                 (None, None) => samples += 1,
                 (Some(found), before) => {
-                    left_out += 1;
+                    below.lines += 1;
                     only_remarks &= !is_sample(&record);
-                    fault = before.or(Some(found));
+                    below.fault = before.or(Some(found));
                 }
             }
         }
-        match fault {
-            Some(fault) if samples == 0 || (left_out > 1 && !only_remarks) => Err(fault),
-            _ => Ok(left_out),
+        match below.fault {
+            Some(fault) if samples == 0 || (below.lines > 1 && !only_remarks) => Err(fault),
+            _ => Ok(below),
         }
     }
 
     /// The fault of a row that does not have the cells of the header.
     fn misfit(&self, byte: usize, record: &StringRecord) -> Option<CampaignError> {
-        let named = self
-            .header
-            .cells
-            .iter()
-            .rposition(|cell| !cell.text.is_empty());
+        let mut cells = self.header.cells.iter();
+        let named = cells.rposition(|cell| !cell.text.is_empty());
         let least = named.map_or(0, |last| last + 1) + self.shift;
         let filled = (0..record.len()).rfind(|&cell| !record[cell].is_empty());
         let most = self.header.width + self.shift;
@@ -221,29 +287,14 @@ impl<'s> Layout<'s> {
 
     /// A fault of a cell of a row.
     pub fn fault(&self, byte: usize, column: usize, what: String, mend: &str) -> CampaignError {
-        cell_error(
-            self.source,
-            byte,
-            (self.cell(column), self.header.mark.into()),
-            what,
-            mend,
-        )
+        let cell = (self.cell(column), self.header.mark.into());
+        cell_error(self.source, byte, cell, what, mend)
     }
 
     /// A fault of a name in the header.
-    pub fn fault_of_name(
-        &self,
-        column: usize,
-        what: String,
-        mend: impl Into<String>,
-    ) -> CampaignError {
-        cell_error(
-            self.source,
-            self.header.byte,
-            (column, self.header.mark.into()),
-            what,
-            mend,
-        )
+    pub fn fault_of_name(&self, column: usize, what: String, mend: &str) -> CampaignError {
+        let cell = (column, self.header.mark.into());
+        cell_error(self.source, self.header.byte, cell, what, mend)
     }
 
     /// Index of the cell of a column in a row.

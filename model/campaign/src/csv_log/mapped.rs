@@ -7,12 +7,13 @@ use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 
 use crate::CampaignError;
-use crate::columns::{ColumnSettings, Source, offer_columns};
+use crate::columns::{ColumnSettings, Source, unassigned};
 use crate::csv_log::clock::Times;
+use crate::csv_log::dialect::is_missing;
 use crate::csv_log::layout::{Layout, Row};
 use crate::scale::{Scale, is_time};
-use crate::series::{Series, values};
-use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
+use crate::series::Series;
+use crate::table::{Cells, Column, LIFT, TIMES, Table};
 use crate::time_base::{self, base_of};
 
 /// A mapped column.
@@ -25,6 +26,8 @@ struct MappedColumn {
     /// Index of its times among those that are read.
     times: usize,
     values: Vec<f64>,
+    /// Whether the log has the name and the unit of the format.
+    is_own: bool,
 }
 
 /// A column of times.
@@ -56,8 +59,12 @@ pub fn read(
     linkage: &Linkage,
 ) -> Result<Table, CampaignError> {
     let mut reader = Reader::new(source, layout, settings, linkage)?;
-    layout.each_row(|row| reader.push(row))?;
-    reader.table(source)
+    let below = layout.each_row(|row| reader.push(row))?;
+    match below.fault {
+        // Only another logger's file may end with remarks, or in the middle of a row.
+        Some(fault) if settings.are_own_names() => Err(fault),
+        _ => reader.table(source),
+    }
 }
 
 /// Index of a column; `None` if it is missing and optional.
@@ -76,16 +83,11 @@ fn index_of(
         (Some(first), Some(second)) => {
             let what = format!("column {} is duplicated", quote(&wanted.name));
             let mend = format!("assign {} or {}", cells[first].name, cells[second].name);
-            Err(layout.fault_of_name(second, what, mend))
+            Err(layout.fault_of_name(second, what, &mend))
         }
         (None, _) if !wanted.is_required => Ok(None),
         (None, _) => {
-            let what = format!(
-                "column {} does not exist; [columns] assigns it to {}",
-                quote(&wanted.name),
-                wanted.column.name
-            );
-            let mend = offer_columns(&wanted.name, &layout.header.names());
+            let (what, mend) = wanted.missing("column", &layout.header.names());
             Err(source.error_at(layout.header.byte, what, mend))
         }
     }
@@ -104,14 +106,13 @@ impl<'a> Reader<'a> {
         }
         let time = found.iter().find(|(wanted, _)| is_time(wanted.column));
         let &(time, main) = time.ok_or_else(|| {
-            let what = format!("no column is assigned to {TIME}");
-            let mend = format!("assign it under [columns]: {TIME} = \"Name:s\"");
+            let (what, mend) = unassigned("column", &TIMES);
             source.error_at(layout.header.byte, what, mend)
         })?;
         let unit = |index: usize| layout.header.cells[index].unit.as_deref();
         let column_of = |index: usize, scale| TimeColumn {
             index,
-            times: Times::new(scale),
+            times: Times::new(scale, layout.orders[index]),
             times_s: Vec::new(),
             bytes: Vec::new(),
         };
@@ -125,7 +126,7 @@ impl<'a> Reader<'a> {
             .filter(|(wanted, _)| !is_time(wanted.column))
         {
             let scale = wanted.scale(unit(index));
-            let scale = scale.map_err(|(what, mend)| layout.fault_of_name(index, what, mend))?;
+            let scale = scale.map_err(|(what, mend)| layout.fault_of_name(index, what, &mend))?;
             let base = base_of(&layout.bases, index, main, lift);
             let known = times.iter().position(|times| times.index == base);
             let place = known.unwrap_or(times.len());
@@ -139,6 +140,7 @@ impl<'a> Reader<'a> {
                 scale,
                 times: place,
                 values: Vec::new(),
+                is_own: settings.are_own_names(),
             });
         }
         Ok(Self {
@@ -160,11 +162,13 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let Some(time_s) = time.times.read(cell) else {
-                let what = format!(
-                    "{} is not a time in the format of the previous ones",
-                    quote(cell)
-                );
-                let mend = "every row needs a time: a number, a date with a time, or a time of day";
+                let as_before = match time.times_s.is_empty() {
+                    true => "",
+                    false => " in the form of those above",
+                };
+                let what = format!("{} is not a time{as_before}", quote(cell));
+                let mend = "every row needs a number, a date with a time of day (21.11.2026 10:00:00.020, \
+                            2026-11-21T10:00:00Z, 21-Nov-2026 10:00:00), or a time of day";
                 return Ok(Some(layout.fault(row.byte, time.index, what, mend)));
             };
             for own in own().collect::<Vec<usize>>() {
@@ -183,62 +187,49 @@ impl<'a> Reader<'a> {
     /// The rows of the times of the lift current, to which samples at other times are moved.
     fn table(self, source: &Arc<SourceFile>) -> Result<Table, CampaignError> {
         let layout = self.layout;
-        let lift = self
-            .columns
-            .iter()
-            .find(|column| column.column.name == LIFT);
+        let mut columns = self.columns.iter();
+        let lift = columns.find(|column| column.column.name == LIFT);
         let main = lift.map_or(0, |lift| lift.times);
         let rows = &self.times[main];
         if rows.bytes.is_empty() {
             let mend = "log the run again";
             return Err(source.error("contains a header but no samples", mend));
         }
-        let of_rows = Series {
-            times_s: rows.times_s.clone(),
-            ..Series::default()
-        };
-        let within_s = of_rows.median_step_s() / 2.0;
-        let mut columns = vec![Samples {
-            name: TIME,
-            cell: layout.cell(rows.index),
-            values: rows.times_s.clone(),
-        }];
+        let mut columns = Vec::new();
         for taken in &self.columns {
             let times = &self.times[taken.times];
-            if taken.values.iter().all(|value| value.is_nan()) {
+            if !taken.is_own && taken.values.iter().all(|value| value.is_nan()) {
                 let what = format!("column {} contains no number", quote(&taken.name));
                 let mend = "assign another column, or delete its line under [columns]";
                 return Err(layout.fault_of_name(taken.index, what, mend));
             }
-            let values = match taken.times == main {
-                true => taken.values.clone(),
-                false => {
-                    times.check(layout)?;
-                    let later_s = times.times.later_than_s(&rows.times);
-                    let series = Series {
-                        times_s: times
-                            .times_s
-                            .iter()
-                            .map(|time_s| time_s + later_s)
-                            .collect(),
-                        values: taken.values.clone(),
-                        bytes: times.bytes.clone(),
-                    };
-                    values(taken.column.name, &series, &rows.times_s, within_s)
-                }
-            };
-            columns.push(Samples {
-                name: taken.column.name,
-                cell: layout.cell(taken.index),
-                values,
-            });
+            if taken.times != main {
+                times.check(layout)?;
+            }
+            let later_s = times.times.later_than_s(&rows.times);
+            let series = times.series(later_s, taken.values.clone());
+            columns.push((taken.column.name, layout.cell(taken.index), series));
         }
+        let series = columns.iter();
+        let series = series.map(|(name, cell, series)| (*name, *cell, series));
         let cells = Cells::Between(layout.header.mark.into());
-        Table::new(Arc::clone(source), columns, rows.bytes.clone(), cells)
+        let own = rows.series(0.0, Vec::new());
+        let table = Table::of_series(source, (layout.cell(rows.index), &own), series, cells)?;
+        Ok(table.since(rows.times.origin_s()))
     }
 }
 
 impl TimeColumn {
+    /// Values at these times, later by `later_s`.
+    fn series(&self, later_s: f64, values: Vec<f64>) -> Series {
+        let times_s = self.times_s.iter().map(|time_s| time_s + later_s);
+        Series {
+            times_s: times_s.collect(),
+            values,
+            bytes: self.bytes.clone(),
+        }
+    }
+
     /// Rejects times that do not rise.
     fn check(&self, layout: &Layout<'_>) -> Result<(), CampaignError> {
         let pairs = self.times_s.windows(2);
@@ -263,7 +254,7 @@ fn value(
     cell: &str,
 ) -> Result<f64, (String, String)> {
     let MappedColumn { column, name, .. } = taken;
-    if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
+    if cell.is_empty() || (is_missing(cell) && !taken.is_own) {
         return Ok(f64::NAN);
     }
     let Some(number) = layout.decimals[taken.index].number(cell) else {
@@ -272,18 +263,17 @@ fn value(
         return Err((what, mend.to_owned()));
     };
     let value = taken.scale.apply(number, linkage);
-    if column.range.contains(&value) {
-        return Ok(value);
-    }
-    let what = format!(
-        "{} in column {} would be {} = {value}",
-        quote(cell),
-        quote(name),
-        column.name
-    );
-    let (low, high) = (column.range.start(), column.range.end());
-    let mend = format!(
-        "the range is {low} to {high}: check the unit under [columns], and leave the cell of a dropout empty"
-    );
-    Err((what, mend))
+    let empty = "leave the cell of a dropout empty";
+    column
+        .checked(value)
+        .map_err(|(would_be, range)| match taken.is_own {
+            true => (
+                format!("{value} in column {name} is out of range"),
+                format!("{range}; {empty}"),
+            ),
+            false => (
+                format!("{} in column {} {would_be}", quote(cell), quote(name)),
+                format!("{range}: check the unit under [columns], and {empty}"),
+            ),
+        })
 }

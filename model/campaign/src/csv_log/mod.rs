@@ -1,23 +1,20 @@
 //! Text tables: the project's own format, whose header has the columns' names, and any other by `[columns]`.
 pub mod clock;
 pub mod dialect;
-pub mod flow_curve;
 mod layout;
-pub mod linkage_table;
+mod lvm;
 mod mapped;
 mod native;
-mod number_table;
 
 use std::sync::Arc;
 
-use dialect::{Header, HeaderCell};
+use dialect::Header;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 use layout::Layout;
 
 use crate::CampaignError;
 use crate::columns::{ColumnSettings, offer_columns};
-use crate::scale::spelling;
 use crate::survey::{LogColumn, Survey};
 use crate::table::Table;
 
@@ -31,7 +28,7 @@ pub fn read(
     linkage: &Linkage,
 ) -> Result<Table, CampaignError> {
     let Some(settings) = settings else {
-        return native::read(source);
+        return native::read(source, linkage);
     };
     let names: Vec<&str> = settings
         .sources
@@ -40,7 +37,7 @@ pub fn read(
         .collect();
     match Header::with_names(&source.text, &names) {
         Some(header) => mapped::read(source, &Layout::new(source, header), settings, linkage),
-        None if native::has_own_header(source) => native::read(source),
+        None if native::has_own_header(source) => native::read(source, linkage),
         None => Err(no_header(source, &names)),
     }
 }
@@ -56,26 +53,58 @@ fn no_header(source: &SourceFile, wanted: &[&str]) -> CampaignError {
     }
 }
 
-/// The columns of a table, with the numbers of at most this many rows.
+/// The columns of a table.
 ///
 /// # Errors
 /// The text is not a table.
 pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
-    const MOST_ROWS: usize = 200_000;
     if native::has_own_header(source) {
         return Ok(Survey::Own);
     }
-    let Some(header) = Header::guessed(&source.text) else {
+    let table = text_table(source)?.ok_or_else(|| {
         let what = "is not a table: there is no header above the rows of numbers";
         let mend = "export it with a header, and commas, semicolons or tabs between the columns";
-        return Err(source.error(what, mend));
+        source.error(what, mend)
+    })?;
+    let TextTable { columns, notes, .. } = table;
+    Ok(Survey::Table { columns, notes })
+}
+
+/// A text table of any dialect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextTable {
+    /// Its columns with a name.
+    pub columns: Vec<LogColumn>,
+    /// Byte offset of the header in the text.
+    pub header: usize,
+    /// Byte offset of each row in the text.
+    pub rows: Vec<usize>,
+    /// What was assumed about its shape and times, one line each.
+    pub notes: Vec<String>,
+}
+
+/// Reads the columns of a table, with the numbers of at most this many rows; `None` if the text is not a table. Rows
+/// that are empty or begin with `#` are skipped.
+///
+/// # Errors
+/// A row does not have the cells of the header.
+pub fn text_table(source: &SourceFile) -> Result<Option<TextTable>, CampaignError> {
+    const MOST_ROWS: usize = 200_000;
+    let Some(header) = Header::guessed(&source.text) else {
+        return Ok(None);
     };
     let layout = Layout::new(source, header);
-    let mut columns: Vec<LogColumn> = layout.header.cells.iter().map(empty_column).collect();
-    let mut rows = 0;
-    let left_out = layout.each_row(|row| {
-        rows += 1;
-        for (index, column) in columns.iter_mut().enumerate().filter(|_| rows <= MOST_ROWS) {
+    let cells = layout.header.cells.iter();
+    let mut columns: Vec<LogColumn> = cells
+        .map(|cell| LogColumn::new(&cell.name, cell.unit.as_deref()))
+        .collect();
+    let mut rows = Vec::new();
+    let below = layout.each_row(|row| {
+        if rows.len() == MOST_ROWS || row.is_remark() {
+            return Ok(None);
+        }
+        rows.push(row.byte);
+        for (index, column) in columns.iter_mut().enumerate() {
             let cell = row.cell(index);
             let number = layout.decimals[index].number(cell);
             let number = number.filter(|number| number.is_finite());
@@ -85,7 +114,7 @@ pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
         Ok(None)
     })?;
     let mut notes = layout.notes.clone();
-    match left_out {
+    match below.lines {
         0 => {}
         1 => notes.push("a line below the samples is left out".to_owned()),
         lines => notes.push(format!("{lines} lines below the samples are left out")),
@@ -94,13 +123,11 @@ pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
         columns[index].times = base.map(|base| layout.header.cells[base].name.clone());
     }
     columns.retain(|column| !column.name.is_empty());
-    Ok(Survey::Table { columns, notes })
-}
-
-fn empty_column(cell: &HeaderCell) -> LogColumn {
-    LogColumn {
-        name: cell.name.clone(),
-        unit: cell.unit.as_deref().map(|unit| spelling(unit).to_owned()),
-        ..LogColumn::default()
-    }
+    let header = layout.header.byte;
+    Ok(Some(TextTable {
+        columns,
+        header,
+        rows,
+        notes,
+    }))
 }

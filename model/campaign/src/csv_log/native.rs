@@ -6,42 +6,37 @@ use csv::StringRecord;
 use hitch_input::input_error::quote;
 use hitch_input::naming::{offer_names, unknown_name};
 use hitch_input::source_file::SourceFile;
+use hitch_plant::Linkage;
 
 use crate::CampaignError;
-use crate::csv_log::dialect::{Decimals, MARKS, rows};
-use crate::table::{COLUMNS, Cells, Samples, TIME, Table, cell_error, column};
+use crate::columns::ColumnSettings;
+use crate::csv_log::dialect::{Header, MARKS, rows};
+use crate::csv_log::layout::Layout;
+use crate::csv_log::mapped;
+use crate::table::{COLUMNS, Column, Table, cell_error, column};
 
-/// Reads the table.
+/// Reads the table. The format is defined: nothing is assumed about its shape, its units or its numbers.
 ///
 /// # Errors
 /// The first fault, with line and column.
-pub fn read(source: &Arc<SourceFile>) -> Result<Table, CampaignError> {
+pub fn read(source: &Arc<SourceFile>, linkage: &Linkage) -> Result<Table, CampaignError> {
     let mark = mark(source);
-    let mut records = rows(&source.text, 0, mark);
-    let Some((byte, header)) = records.next() else {
-        return Err(source.error(
-            "is empty",
-            "a log has a header, and one row for each sample",
-        ));
+    let Some((byte, record)) = rows(&source.text, 0, mark).next() else {
+        let mend = "a log has a header, and one row for each sample";
+        return Err(source.error("is empty", mend));
     };
-    let names = column_names(source, &header, mark, byte)?;
-    let mut rows = Rows {
-        source,
-        mark,
-        decimals: decimals(source, mark, names.len()),
-        columns: names.iter().map(|name| (*name, Vec::new())).collect(),
-        bytes: Vec::new(),
-    };
-    for (byte, record) in records {
-        rows.push(&record, byte)?;
+    let columns = columns(source, &record, mark, byte)?;
+    let mut header = Header::at(&source.text, mark, byte, &record);
+    for (cell, column) in header.cells.iter_mut().zip(columns) {
+        cell.unit = Some(column.unit.to_owned());
     }
-    if rows.bytes.is_empty() {
-        return Err(source.error("contains a header but no samples", "log the run again"));
+    let layout = Layout::new(source, header);
+    if let Some(assumed) = layout.notes.first() {
+        let mend =
+            "the project's format has one cell for each name, and no separators of thousands";
+        return Err(source.error_at(byte, assumed.as_str(), mend));
     }
-    let columns = rows.columns.into_iter().enumerate();
-    let columns = columns.map(|(cell, (name, values))| Samples { name, cell, values });
-    let cells = Cells::Between(mark.into());
-    Table::new(Arc::clone(source), columns.collect(), rows.bytes, cells)
+    mapped::read(source, &layout, &ColumnSettings::by_own_names(), linkage)
 }
 
 /// Whether all columns have the project's names.
@@ -59,88 +54,37 @@ fn mark(source: &SourceFile) -> u8 {
         })
     };
     // Of several equal ones the last is chosen.
-    MARKS.into_iter().max_by_key(known).unwrap_or(b',')
+    let marks = MARKS.into_iter().filter(|mark| *mark != b' ');
+    marks.max_by_key(known).unwrap_or(b',')
 }
 
-/// The decimal mark: never a comma if commas are separators.
-fn decimals(source: &SourceFile, mark: u8, width: usize) -> Option<Decimals> {
-    const EXAMINED_ROWS: usize = 1_000;
-    (mark != b',').then(|| {
-        let first: Vec<StringRecord> = rows(&source.text, 0, mark)
-            .skip(1)
-            .take(EXAMINED_ROWS)
-            .map(|(_, row)| row)
-            .collect();
-        Decimals::of(first.iter().flat_map(|row| row.iter().take(width)))
-    })
-}
-
-/// The rows read so far.
-struct Rows<'a> {
-    source: &'a SourceFile,
-    mark: u8,
-    decimals: Option<Decimals>,
-    columns: Vec<(&'static str, Vec<f64>)>,
-    /// Byte offset of each row in the file.
-    bytes: Vec<usize>,
-}
-
-impl Rows<'_> {
-    fn push(&mut self, record: &StringRecord, byte: usize) -> Result<(), CampaignError> {
-        if record.len() != self.columns.len() {
-            let what = format!(
-                "the row has {} cells, the header has {}",
-                record.len(),
-                self.columns.len()
-            );
-            return Err(self.source.error_at(
-                byte,
-                what,
-                "leave the cell of a dropout empty, but keep its comma",
-            ));
-        }
-        self.bytes.push(byte);
-        for (index, cell) in record.iter().enumerate() {
-            let name = self.columns[index].0;
-            let value = number(name, cell, self.decimals).map_err(|(what, mend)| {
-                cell_error(self.source, byte, (index, self.mark.into()), what, mend)
-            })?;
-            self.columns[index].1.push(value);
-        }
-        Ok(())
-    }
-}
-
-/// Checks the header and returns the column names.
-fn column_names(
+/// The columns that a header names.
+///
+/// # Errors
+/// A name is not known, or occurs twice.
+fn columns(
     source: &SourceFile,
     header: &StringRecord,
     mark: u8,
     byte: usize,
-) -> Result<Vec<&'static str>, CampaignError> {
-    let known: Vec<&'static str> = COLUMNS.iter().map(|column| column.name).collect();
-    let mut names: Vec<&'static str> = Vec::with_capacity(header.len());
+) -> Result<Vec<&'static Column>, CampaignError> {
+    let mut columns: Vec<&'static Column> = Vec::with_capacity(header.len());
     for (index, given) in header.iter().enumerate() {
-        let Some(name) = known.iter().find(|name| **name == given) else {
-            let (what, mend) = unknown_column(given, index, &known);
-            return Err(cell_error(source, byte, (index, mark.into()), what, mend));
+        let at = (index, mark.into());
+        let Some(column) = column(given) else {
+            let (what, mend) = unknown_column(given, index);
+            return Err(cell_error(source, byte, at, what, mend));
         };
-        if names.contains(name) {
-            let what = format!("column {name} is duplicated");
-            return Err(cell_error(
-                source,
-                byte,
-                (index, mark.into()),
-                what,
-                "delete one of the two",
-            ));
+        if columns.contains(&column) {
+            let what = format!("column {given} is duplicated");
+            return Err(cell_error(source, byte, at, what, "delete one of the two"));
         }
-        names.push(name);
+        columns.push(column);
     }
-    Ok(names)
+    Ok(columns)
 }
 
-fn unknown_column(given: &str, index: usize, known: &[&str]) -> (String, String) {
+fn unknown_column(given: &str, index: usize) -> (String, String) {
     if given.is_empty() {
         return (
             format!("column {} has no name", index + 1),
@@ -153,54 +97,10 @@ fn unknown_column(given: &str, index: usize, known: &[&str]) -> (String, String)
             "start with a header".to_owned(),
         );
     }
+    let known: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+    let offered = offer_names(given, &known);
     (
-        unknown_name("column", given, known),
-        format!(
-            "{}; or assign the columns under [columns], as `hitch import` does",
-            offer_names(given, known)
-        ),
+        unknown_name("column", given, &known),
+        format!("{offered}; or assign the columns under [columns], as `hitch import` does"),
     )
-}
-
-/// The number in a cell; NaN for an empty cell, which is an error for time.
-fn number(
-    name: &'static str,
-    cell: &str,
-    decimals: Option<Decimals>,
-) -> Result<f64, (String, String)> {
-    if cell.is_empty() && name != TIME {
-        return Ok(f64::NAN);
-    }
-    let mend = if name == TIME {
-        "every row needs a time"
-    } else {
-        "leave the cell of a dropout empty"
-    };
-    let read = match decimals {
-        Some(decimals) => decimals.number(cell),
-        None => cell.parse::<f64>().ok(),
-    };
-    let value = match read {
-        Some(value) => value,
-        None => {
-            return Err((
-                format!("{} in column {name} is not a number", quote(cell)),
-                mend.to_owned(),
-            ));
-        }
-    };
-    let Some(range) = column(name).map(|column| &column.range) else {
-        return Ok(value);
-    };
-    if range.contains(&value) {
-        return Ok(value);
-    }
-    if !value.is_finite() {
-        return Err((
-            format!("{} in column {name} is not finite", quote(cell)),
-            mend.to_owned(),
-        ));
-    }
-    let mend = format!("the range is {} to {}; {mend}", range.start(), range.end());
-    Err((format!("{value} in column {name} is out of range"), mend))
 }

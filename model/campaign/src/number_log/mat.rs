@@ -172,7 +172,6 @@ impl Reader {
         element: &Element<'_>,
         depth: usize,
     ) -> Result<Option<(String, Value)>, String> {
-        const CELL: u8 = 1;
         const STRUCT: u8 = 2;
         const OBJECT: u8 = 3;
         const TEXT: u8 = 4;
@@ -199,7 +198,6 @@ impl Reader {
             STRUCT => self.structs(&mut rest, size, depth)?,
             OBJECT => Value::Object,
             FIRST_NUMERIC..=LAST_NUMERIC => self.matrix(&mut rest, size)?,
-            CELL => Value::Other,
             _ => Value::Other,
         };
         Ok(Some((name, value)))

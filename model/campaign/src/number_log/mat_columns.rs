@@ -89,10 +89,8 @@ fn time_series(name: &str, fields: &Fields) -> Option<Vec<NumberColumn>> {
 
 fn of_signals(name: &str, signals: &[Vec<(String, Value)>]) -> Vec<NumberColumn> {
     let signal = |(index, fields): (usize, &Vec<(String, Value)>)| {
-        let label = match field(fields, &["label"]) {
-            Some(Value::Text(label)) if !label.trim().is_empty() => label.trim().to_owned(),
-            _ => format!("{name}.signals({})", index + 1),
-        };
+        let label = text(fields, &["label"]);
+        let label = label.unwrap_or_else(|| format!("{name}.signals({})", index + 1));
         of_data(&label, fields, &["values"]).unwrap_or_default()
     };
     signals.iter().enumerate().flat_map(signal).collect()
@@ -110,8 +108,13 @@ fn unit(fields: &Fields) -> Option<String> {
     if let Some(Value::Structs(about)) = field(fields, &["datainfo"]) {
         return about.first().and_then(|fields| unit(fields));
     }
-    match field(fields, &["units", "unit"])? {
-        Value::Text(unit) if !unit.trim().is_empty() => Some(unit.trim().to_owned()),
+    text(fields, &["units", "unit"])
+}
+
+/// A text that is not blank.
+fn text(fields: &Fields, known: &[&str]) -> Option<String> {
+    match field(fields, known)? {
+        Value::Text(text) if !text.trim().is_empty() => Some(text.trim().to_owned()),
         _ => None,
     }
 }

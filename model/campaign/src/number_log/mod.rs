@@ -14,13 +14,12 @@ use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
 use crate::channel_log::{self, ChannelFile, LogChannel};
-use crate::columns::Source;
-use crate::csv_log::clock::Times;
-use crate::scale::spelling;
+use crate::columns::{Source, unassigned};
+use crate::csv_log::clock::{DateOrder, Times};
 use crate::series::Series;
 use crate::survey::{LogColumn, Survey};
-use crate::table::TIME;
-use crate::time_base::{self, Seen, is_unit_of_time};
+use crate::table::TIMES;
+use crate::time_base::{self, Seen};
 
 /// Most numbers of a file: as text they would fill the longest file that is read.
 const MOST_NUMBERS: usize = 64 << 20;
@@ -76,6 +75,8 @@ impl NumberLog {
             samples: column.values.len(),
             fault: None,
         };
+        let seen =
+            |column: &NumberColumn| Seen::new(&column.name, column.unit.as_deref(), &column.values);
         let seen: Vec<Seen> = columns.iter().map(seen).collect();
         let bases = time_base::bases(&seen);
         Ok(Some(Self {
@@ -119,11 +120,10 @@ impl NumberLog {
     ) -> Result<(&'s [f64], Times), CampaignError> {
         let column = &self.columns[index];
         if let Some(own) = &column.times {
-            return Ok((own, Times::new(None)));
+            return Ok((own, Times::new(None, DateOrder::default())));
         }
         let Some(time) = time else {
-            let what = format!("no column is assigned to {TIME}");
-            let mend = format!("assign it under [columns]: {TIME} = \"Name:s\"");
+            let (what, mend) = unassigned("column", &TIMES);
             return Err(self.source.error(what, mend));
         };
         let named = self
@@ -150,31 +150,15 @@ impl NumberLog {
             true => main_scale,
             false => time_base::scale(unit(base), main_scale),
         };
-        Ok((&found.values, Times::new(scale)))
-    }
-}
-
-/// A column as far as its times matter.
-fn seen(column: &NumberColumn) -> Seen {
-    let unit = column.unit.as_deref().map(spelling);
-    Seen {
-        name: column.name.clone(),
-        is_in_time: unit.is_some_and(is_unit_of_time),
-        has_unit: unit.is_some(),
-        is_clock: false,
-        samples: column.values.len(),
-        rises: time_base::rises(&column.values),
+        Ok((&found.values, Times::new(scale, DateOrder::default())))
     }
 }
 
 fn listed(column: &NumberColumn) -> LogColumn {
-    let unit = column.unit.as_deref();
     LogColumn {
-        name: column.name.clone(),
-        unit: unit.map(|unit| spelling(unit).to_owned()),
         values: column.values.clone(),
         lasts_s: column.times.as_deref().and_then(channel_log::lasts),
-        ..LogColumn::default()
+        ..LogColumn::new(&column.name, column.unit.as_deref())
     }
 }
 

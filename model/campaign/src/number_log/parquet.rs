@@ -152,30 +152,14 @@ fn add(
     left: usize,
     values: &mut Vec<f64>,
 ) -> Result<()> {
+    use ColumnReader as Of;
+    let of_times = |value: &i64| origin.distance(*value) as f64;
     match reader {
-        ColumnReader::BoolColumnReader(reader) => add_typed(
-            reader,
-            deepest,
-            |value| f64::from(u8::from(*value)),
-            left,
-            values,
-        ),
-        ColumnReader::Int32ColumnReader(reader) => {
-            add_typed(reader, deepest, |value| f64::from(*value), left, values)
-        }
-        ColumnReader::Int64ColumnReader(reader) => add_typed(
-            reader,
-            deepest,
-            |value| origin.distance(*value) as f64,
-            left,
-            values,
-        ),
-        ColumnReader::FloatColumnReader(reader) => {
-            add_typed(reader, deepest, |value| f64::from(*value), left, values)
-        }
-        ColumnReader::DoubleColumnReader(reader) => {
-            add_typed(reader, deepest, |value| *value, left, values)
-        }
+        Of::BoolColumnReader(of) => add_typed(of, deepest, |v| u8::from(*v).into(), left, values),
+        Of::Int32ColumnReader(of) => add_typed(of, deepest, |v| (*v).into(), left, values),
+        Of::Int64ColumnReader(of) => add_typed(of, deepest, of_times, left, values),
+        Of::FloatColumnReader(of) => add_typed(of, deepest, |v| (*v).into(), left, values),
+        Of::DoubleColumnReader(of) => add_typed(of, deepest, |v| *v, left, values),
         _ => Ok(()),
     }
 }

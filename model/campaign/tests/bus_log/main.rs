@@ -1,7 +1,9 @@
 //! Tests of runs from logs of a CAN bus: formats, descriptions, and faults.
 
+mod descriptions;
 mod faults;
 mod logs;
+mod tables;
 
 use std::fmt::Write as _;
 

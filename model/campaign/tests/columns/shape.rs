@@ -115,3 +115,35 @@ fn columns_with_equal_names_are_told_apart() {
         "{got}"
     );
 }
+
+#[test]
+fn labview_writes_times_as_a_column_or_as_a_step() {
+    let columns = "[columns]\ntime_s = \"X_Value\"\nlift_current_a = \"up\"\nlower_current_a = \"down\"\n\
+        cylinder_pressure_bar = \"p\"\nrocker_angle_deg = \"phi\"\n";
+    let lvm = |is_column: bool| {
+        let one_or_no = if is_column { "One" } else { "No" };
+        let head = format!(
+            "LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\t{one_or_no}\nTime\t10:00:00\n***End_of_Header***\t\n\t\n\
+             Channels\t4\t\t\t\t\nSamples\t200\t200\t200\t200\t\nTime\t10:00:00\t10:00:00\t10:00:00\t10:00:00\t\n\
+             Y_Unit_Label\tA\tA\tbar\tdeg\t\nX0\t0.5\t0.5\t0.5\t0.5\t\nDelta_X\t0.01\t0.01\t0.01\t0.01\t\n\
+             ***End_of_Header***\t\t\t\t\t\nX_Value\tup\tdown\tp\tphi\tComment\n"
+        );
+        let row = |[t, a, b, p, w]: [f64; 5]| {
+            let time = if is_column {
+                t.to_string()
+            } else {
+                String::new()
+            };
+            format!("{time}\t{a}\t{b}\t{p}\t{w}\n")
+        };
+        head + &samples().into_iter().map(row).collect::<String>()
+    };
+    let column = loaded("bench.lvm", lvm(true).as_bytes(), columns);
+    assert_same("a column", &column, 1e-12);
+    let mut step = loaded("bench.lvm", lvm(false).as_bytes(), columns);
+    assert_eq!(step.time_s[0], 0.5, "X0");
+    for time_s in &mut step.time_s {
+        *time_s -= 0.5;
+    }
+    assert_same("a step", &step, 1e-9);
+}

@@ -29,6 +29,31 @@ pub fn from_second_differences(time_s: &[f64], record: &[f64]) -> Option<f64> {
     Some(*median / MEDIAN_OF_ABSOLUTE_NORMAL)
 }
 
+/// The step between the values that a record can have, in its unit; zero if it has none.
+///
+/// Different values of a rounded record are at least this step apart, and it returns to the two values of the closest pair.
+/// A record with more digits passes each value once, also on a steady ramp, whose samples are equally far apart.
+#[must_use]
+pub fn resolution(record: &[f64]) -> f64 {
+    /// Part of a step that rounding and the conversion of units may change.
+    const ROUNDING: f64 = 1e-6;
+    let mut values: Vec<f64> = record.iter().copied().filter(|v| v.is_finite()).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let levels: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
+    let step = |pair: &[&[f64]]| pair[1][0] - pair[0][0];
+    let closest = levels.windows(2).map(step).fold(f64::INFINITY, f64::min);
+    let returns = |pair: &&[&[f64]]| pair.iter().all(|level| level.len() > 1);
+    let held = levels.windows(2).filter(returns).map(step);
+    let held = held.fold(f64::INFINITY, f64::min);
+    let is_step = held.is_finite() && held <= closest * (1.0 + ROUNDING);
+    if is_step { held } else { 0.0 }
+}
+
+/// Standard deviation of an error that is uniform within one step.
+fn rounding_sigma(step: f64) -> f64 {
+    step / 12.0_f64.sqrt()
+}
+
 /// Distance of a sample, given by time and value, from the line between its neighbours, in standard deviations of unit
 /// noise.
 fn bend(before: (f64, f64), sample: (f64, f64), after: (f64, f64)) -> f64 {
@@ -44,7 +69,8 @@ const NOISE_FLOOR: [f64; 4] = [0.01, 0.01, 0.01, 0.005];
 /// Smallest accepted noise of a current, A.
 const CURRENT_NOISE_FLOOR_A: f64 = 1e-4;
 
-/// Declared noise of a channel, else the median of the estimates from its runs; NaN without the channel.
+/// Declared noise of a channel, else the median of the estimates from its runs, and at least that of rounding to the
+/// record's resolution; NaN without the channel.
 pub(crate) fn channel_noise(campaign: &Campaign, channel: Channel) -> f64 {
     let records = || {
         let runs = campaign.runs.iter();
@@ -61,7 +87,9 @@ pub(crate) fn channel_noise(campaign: &Campaign, channel: Channel) -> f64 {
             median(records().filter_map(of).collect())
         })
         .unwrap_or(0.0);
-    sigma.max(NOISE_FLOOR[channel.index()])
+    let of_steps = records().map(|(_, record)| rounding_sigma(resolution(record)));
+    let rounded = median(of_steps.collect()).unwrap_or(0.0);
+    sigma.max(rounded).max(NOISE_FLOOR[channel.index()])
 }
 
 pub(crate) fn current_noise(campaign: &Campaign) -> Currents {
@@ -137,4 +165,38 @@ fn plateaus(record: &[f64], sigma_a: f64, shortest: usize) -> Vec<&[f64]> {
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sine of this amplitude over 1 000 samples, rounded to a step.
+    fn wave(amplitude: f64, step: f64) -> Vec<f64> {
+        let of = |i: u32| amplitude * (f64::from(i) * 0.0063).sin();
+        (0..1_000).map(|i| (of(i) / step).round() * step).collect()
+    }
+
+    #[test]
+    fn a_rounded_record_has_the_noise_of_its_rounding() {
+        for step in [1.0, 0.02] {
+            let got = resolution(&wave(30.0 * step, step));
+            assert!((got - step).abs() < 1e-9, "{got}");
+        }
+        // A uniform error of one degree: the variance is the integral of x^2 from -1/2 to 1/2.
+        assert!((rounding_sigma(1.0).powi(2) - 1.0 / 12.0).abs() < 1e-12);
+        let rounded = wave(30.0, 1.0);
+        let errors = (0..1_000).map(|i| 30.0 * (f64::from(i) * 0.0063).sin() - rounded[i as usize]);
+        let variance = errors.map(|error| error * error).sum::<f64>() / 1_000.0;
+        assert!((variance * 12.0 - 1.0).abs() < 0.1, "{variance}");
+    }
+
+    #[test]
+    fn equal_steps_of_a_ramp_are_no_resolution() {
+        let ramp = |i: i32| f64::from(i.clamp(100, 300)) * 0.0217;
+        let held: Vec<f64> = (0..400).map(ramp).collect();
+        assert_eq!(resolution(&held), 0.0);
+        assert_eq!(resolution(&[]), 0.0);
+        assert_eq!(resolution(&[3.0; 20]), 0.0);
+    }
 }

@@ -4,10 +4,10 @@ use std::io;
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::{flow_curve, linkage_table};
 use hitch_model_file::{Template, Valve};
 use hitch_plant::ValveCurve;
 
+use super::{flow_curve, linkage_table};
 use crate::error::Error;
 use crate::output;
 use crate::outputs::Outputs;

@@ -75,12 +75,13 @@ impl Assignment {
                 file: path_from(folder, file),
                 mapping,
                 conditions: stand.conditions(file)?,
+                then: Vec::new(),
                 cuts: Vec::new(),
             });
         }
         let can = files.can(folder, signals.as_ref());
         let read = campaign(folder, self.name(), can.as_deref(), logs, linkage);
-        read.map(|(_, campaign)| campaign)
+        read.map(|(_, campaign, _)| campaign)
             .map_err(|error| unplaced(folder, error))
     }
 

@@ -72,7 +72,7 @@ impl Proposal {
                 "a campaign's manifest is named campaign.toml; delete other files of this kind";
             return Err(CampaignError::of_file(file, "is not a log", mend).into());
         }
-        let files = Files::sort(files)?;
+        let mut files = Files::sort(files)?;
         let mut groups = Vec::new();
         if let Some(signals) = files.signals()? {
             let logs = files.logs.iter().enumerate();

@@ -6,7 +6,7 @@ use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::{LinkageTable, LinkageTableError};
 
-use crate::csv_log::number_table::{NumberTable, Wanted};
+use super::number_table::{NumberTable, Wanted};
 
 const EXAMPLE: &str = "travel_mm,angle_deg,height_mm";
 const LENGTHS: &[(&str, f64)] = &[("mm", 1e-3), ("cm", 1e-2), ("m", 1.0)];

@@ -7,7 +7,7 @@ use hitch_input::source_file::SourceFile;
 use hitch_plant::units::M3_S_PER_LPM;
 use hitch_plant::{ValveCurve, ValveCurveError};
 
-use crate::csv_log::number_table::{NumberTable, Wanted};
+use super::number_table::{NumberTable, Wanted};
 
 const EXAMPLE: &str = "Current [A];Flow [l/min] or current_a,flow_lpm";
 
@@ -83,8 +83,8 @@ mod tests {
             read_text("Strom [mA];Durchfluss [l/min]\n0;0\n1500;0\n2000;20,0\n").expect("a curve");
         assert_eq!(english.currents_a(), [0.0, 1.5, 2.0]);
         assert_eq!(english, german);
-        let table =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join("../paper/data/table2a_lift_valve.csv");
+        let table = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../model/paper/data/table2a_lift_valve.csv");
         let shipped = read(&table).expect("a curve");
         // The model omits collinear points at the end.
         let nominal = hitch_model_file::nominal();

@@ -1,0 +1,86 @@
+//! Columns of numbers from a text table of any dialect, with the units in its header.
+
+use hitch_campaign::survey::{LogColumn, text_table};
+use hitch_input::input_error::{InputError, quote};
+use hitch_input::source_file::SourceFile;
+
+/// A column that a table has to have.
+pub struct Wanted {
+    /// Its quantity, for messages.
+    pub quantity: &'static str,
+    /// Words in its name; none if the unit identifies it.
+    pub words: &'static [&'static str],
+    /// Its units in lower case, with their size in SI.
+    pub units: &'static [(&'static str, f64)],
+    /// The units, for messages.
+    pub offered: &'static str,
+    /// Example of a header.
+    pub example: &'static str,
+}
+
+/// Columns of numbers, in SI.
+#[derive(Debug)]
+pub struct NumberTable<const N: usize> {
+    /// The columns, in the order asked for.
+    pub columns: [Vec<f64>; N],
+    /// Position of each row in the text.
+    pub bytes: Vec<usize>,
+}
+
+impl<const N: usize> NumberTable<N> {
+    /// Reads the columns; rows that are empty or begin with `#` are skipped.
+    ///
+    /// # Errors
+    /// A fault in the table, by line.
+    pub fn read(source: &SourceFile, wanted: &[Wanted; N]) -> Result<Self, InputError> {
+        let table = text_table(source)?.ok_or_else(|| {
+            let example = wanted[0].example;
+            let mend = format!(
+                "write a header such as {example} above the numbers, and one row for each point"
+            );
+            source.error("is not a table with a header", mend)
+        })?;
+        let mut columns = [const { Vec::new() }; N];
+        for (values, wanted) in columns.iter_mut().zip(wanted) {
+            let (found, si) = column(&table.columns, wanted).ok_or_else(|| {
+                let what = format!("no column is a {} in {}", wanted.quantity, wanted.offered);
+                let mend = format!("write the unit in the header, as in {}", wanted.example);
+                source.error_at(table.header, what, mend)
+            })?;
+            if let Some(row) = found.values.iter().position(|value| value.is_nan()) {
+                let what = format!("the cell of {} is not a number", quote(&found.name));
+                let mend = "write a number, or delete the row";
+                return Err(source.error_at(table.rows[row], what, mend));
+            }
+            *values = found.values.iter().map(|value| si * value).collect();
+        }
+        Ok(Self {
+            columns,
+            bytes: table.rows,
+        })
+    }
+}
+
+/// A column, and the size of its unit in SI.
+fn column<'c>(columns: &'c [LogColumn], wanted: &Wanted) -> Option<(&'c LogColumn, f64)> {
+    let is_named = |column: &&LogColumn| {
+        let name = column.name.to_lowercase();
+        wanted.words.is_empty() || wanted.words.iter().any(|word| name.contains(word))
+    };
+    let mut named = columns.iter().filter(is_named);
+    named.find_map(|column| Some((column, unit(column, wanted.units)?)))
+}
+
+/// Size of a column's unit in SI; `None` for unknown units.
+fn unit(column: &LogColumn, units: &[(&str, f64)]) -> Option<f64> {
+    let written = column.unit.as_ref().map(|unit| unit.to_lowercase());
+    let name = column.name.to_lowercase();
+    let is_of = |unit: &str| match &written {
+        Some(written) => written == unit,
+        None => name.ends_with(&format!("_{unit}")),
+    };
+    units
+        .iter()
+        .find(|(unit, _)| is_of(unit))
+        .map(|(_, si)| *si)
+}
