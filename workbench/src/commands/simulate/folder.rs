@@ -1,0 +1,158 @@
+//! A folder of simulated runs that is a campaign.
+
+use std::cell::RefCell;
+use std::collections::HashSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use hitch_campaign::{Bench, Campaign, Run};
+use hitch_model_file::quoted;
+use hitch_plant::Channel;
+
+use crate::error::Error;
+use crate::output;
+
+/// A new campaign.
+pub struct Folder {
+    path: PathBuf,
+    runs: RefCell<Runs>,
+}
+
+/// The runs so far.
+#[derive(Default)]
+struct Runs {
+    names: HashSet<String>,
+    /// Their tables in the manifest.
+    manifest: String,
+}
+
+impl Folder {
+    /// An empty campaign at a path.
+    ///
+    /// # Errors
+    /// If it is not writable, or has files already.
+    pub fn new(path: &Path) -> Result<Self, Error> {
+        output::no_stdout("--out", Some(path), "the result is a folder")?;
+        let has_files = fs::read_dir(path).is_ok_and(|mut files| files.next().is_some());
+        if has_files || path.is_file() {
+            return Err(Error::Usage(format!(
+                "{}: exists already, and is not overwritten; give a new folder",
+                path.display()
+            )));
+        }
+        output::check_folder(path)?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            runs: RefCell::default(),
+        })
+    }
+
+    /// Adds a run with its simulated log.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn add(&self, run: &Run, log: &str) -> Result<(), Error> {
+        let runs = &mut *self.runs.borrow_mut();
+        let name = free_name(&run.file, &mut runs.names);
+        fs::create_dir_all(&self.path).map_err(|source| Error::Write {
+            path: self.path.clone(),
+            source,
+        })?;
+        output::write_file(&self.path.join(&name), log.as_bytes())?;
+        let (bench, condition) = match run.bench {
+            Bench::Hitch { load_kg } => ("hitch", format!("load_kg = {load_kg:?}")),
+            Bench::Flow { port_pressure_bar } => {
+                ("flow", format!("port_pressure_bar = {port_pressure_bar:?}"))
+            }
+        };
+        // Writing to a string cannot fail.
+        let _ = write!(
+            runs.manifest,
+            "\n[[run]]\nfile = {}\nbench = \"{bench}\"\n{condition}\noil_temperature_c = {:?}\n",
+            quoted(&name),
+            run.oil_temperature_c
+        );
+        Ok(())
+    }
+
+    /// Writes the manifest, with the noise of the instruments of the campaign that was simulated.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn finish(self, simulated: Option<&Campaign>) -> Result<(), Error> {
+        let name = self.path.file_name().unwrap_or(self.path.as_os_str());
+        let name = quoted(&name.to_string_lossy());
+        let head = format!("format = 1\nname = {name}\ndescription = \"Simulated\"\n");
+        let noise = simulated.map_or(String::new(), noise);
+        let text = head + &noise + &self.runs.into_inner().manifest;
+        output::write_file(&self.path.join("campaign.toml"), text.as_bytes())
+    }
+}
+
+/// The table of the noise of a campaign's instruments; empty if none is stated.
+fn noise(campaign: &Campaign) -> String {
+    let noise = &campaign.noise;
+    let channels = Channel::ALL.map(|channel| (channel.key(), noise.of(channel)));
+    let currents = [
+        ("lift_current_a", noise.lift_current_a),
+        ("lower_current_a", noise.lower_current_a),
+    ];
+    let stated = currents.into_iter().chain(channels);
+    let lines = stated.filter_map(|(key, sigma)| Some(format!("{key} = {:?}\n", sigma?)));
+    let lines: String = lines.collect();
+    match lines.is_empty() {
+        true => lines,
+        false => format!("\n[noise]\n{lines}"),
+    }
+}
+
+/// A name for the log of a run: that of its file, with a number if it is taken.
+fn free_name(label: &str, taken: &mut HashSet<String>) -> String {
+    let file = Path::new(label).file_name().unwrap_or_default();
+    let file = file.to_string_lossy();
+    let stem = stem(&file);
+    let names = (2..).map(|number| format!("{stem}_{number}.csv"));
+    let mut names = std::iter::once(format!("{stem}.csv")).chain(names);
+    let free = names.find(|name| taken.insert(name.clone()));
+    free.unwrap_or_default()
+}
+
+/// The name of a run without the extension of its file and the time span behind it.
+fn stem(file: &str) -> &str {
+    let is_extension = |at: usize| {
+        let word = file[at + 1..].split(' ').next().unwrap_or_default();
+        word.starts_with(char::is_alphabetic) && word.chars().all(char::is_alphanumeric)
+    };
+    let mut points = file.rmatch_indices('.').map(|(at, _)| at);
+    let end = points.find(|&at| is_extension(at));
+    end.map_or(file, |at| &file[..at])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::free_name;
+
+    #[test]
+    fn every_run_has_a_file_of_its_own() {
+        let mut taken = HashSet::new();
+        let labels = [
+            "a/lift_1.5A.csv",
+            "b/lift_1.5A.csv",
+            "monday.log 12 to 47.5 s",
+            "monday.log from 80 s",
+        ];
+        let names = labels.map(|label| free_name(label, &mut taken));
+        assert_eq!(
+            names,
+            [
+                "lift_1.5A.csv",
+                "lift_1.5A_2.csv",
+                "monday.csv",
+                "monday_2.csv"
+            ]
+        );
+    }
+}
