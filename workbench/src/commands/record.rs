@@ -3,12 +3,16 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use hitch_campaign::Run;
+
 use super::loop_::{load_kg, temperature_c};
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
 use crate::text::wrapped;
-use crate::xcp_tool::{BusAddress, CHANNELS, PERIOD_MS, Row, connect, record, tool_error};
+use crate::xcp_tool::{
+    BusAddress, CHANNELS, PERIOD_MS, Recording, Row, connect, record, tool_error,
+};
 
 /// Arguments of `hitch record`.
 #[derive(Debug, clap::Args)]
@@ -39,7 +43,8 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the ECU cannot be reached, or the campaign cannot be written.
+/// If the ECU cannot be reached, the connection is lost, or the campaign cannot be written. What was recorded until a loss
+/// is kept.
 pub fn run(args: &Args) -> Result<(), Error> {
     let manifest = args.out.join("campaign.toml");
     output::no_stdout("--out", Some(&args.out), "a campaign is a folder")?;
@@ -47,12 +52,18 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let so_far = so_far(args, &manifest)?;
     let progress = Progress::start("recording");
     let mut session = connect(&args.can)?;
-    let rows = record(&mut session, args.seconds, |time_s| {
+    let Recording { rows, lost } = record(&mut session, args.seconds, |time_s| {
         progress.say(format!("recording: {time_s:.1} s"));
     })
     .map_err(tool_error)?;
-    session.close().map_err(tool_error)?;
+    // A connection that is lost has nothing to close.
+    let lost = lost.or(session.close().err());
     drop(progress);
+    if let Some(fault) = lost.as_ref().filter(|_| rows.len() < Run::FEWEST_SAMPLES) {
+        return Err(Error::Failed(format!(
+            "{fault}; too few samples until then to keep"
+        )));
+    }
     fs::create_dir_all(&args.out).map_err(|source| Error::Write {
         path: args.out.clone(),
         source,
@@ -64,8 +75,13 @@ pub fn run(args: &Args) -> Result<(), Error> {
         args.load, args.temperature
     );
     output::write_file(&manifest, (so_far + &run).as_bytes())?;
-    let said = format!("{} samples of {file} in {}", rows.len(), args.out.display());
-    output::print(&(wrapped(&said) + "\n"))
+    let kept = format!("{} samples of {file} in {}", rows.len(), args.out.display());
+    match lost {
+        None => output::print(&(wrapped(&kept) + "\n")),
+        Some(fault) => Err(Error::Failed(format!(
+            "{fault}; what was recorded until then is kept: {kept}"
+        ))),
+    }
 }
 
 /// The existing manifest of the campaign, or the head of a new one.

@@ -18,5 +18,5 @@ pub use can_client::CanClient;
 pub use can_listener::{CanListener, ListenMode};
 pub use connection::{connect, tool_error, write_to};
 pub use key_file::read_key;
-pub use recording::{CHANNELS, PERIOD_MS, Row, record};
+pub use recording::{CHANNELS, PERIOD_MS, Recording, Row, record};
 pub use session::{Session, ToolError};

@@ -44,6 +44,14 @@ pub enum Reading {
 /// A row of a log: time, s, then the values of [`CHANNELS`].
 pub type Row = (f64, [f64; CHANNELS.len()]);
 
+/// What was recorded.
+pub struct Recording {
+    /// The samples.
+    pub rows: Vec<Row>,
+    /// How the connection was lost, if it was.
+    pub lost: Option<ToolError>,
+}
+
 /// One measurement: address, length, and scale of a count.
 #[derive(Clone, Copy)]
 struct Source {
@@ -55,13 +63,15 @@ struct Source {
 
 /// Records for `duration_s` of ECU time.
 ///
+/// A connection that is lost on the way ends the recording.
+///
 /// # Errors
-/// If the ECU refuses a command or does not answer.
+/// If the ECU refuses a command or does not answer at the start.
 pub fn record(
     session: &mut Session,
     duration_s: f64,
     mut progress: impl FnMut(f64),
-) -> Result<Vec<Row>, ToolError> {
+) -> Result<Recording, ToolError> {
     let sources = CHANNELS.map(|(_, reading)| source(reading));
     let tables = tables(&sources);
     set_up(session, &tables)?;
@@ -69,15 +79,22 @@ pub fn record(
     let mut rows: Vec<Row> = Vec::new();
     let mut sample = Sample::default();
     while rows.last().is_none_or(|(time_s, _)| *time_s < duration_s) {
-        let packet = session.packet(Instant::now() + SILENT_AFTER)?;
-        let packet = packet.ok_or(ToolError::Silent)?;
+        let packet = session.packet(Instant::now() + SILENT_AFTER);
+        let packet = match packet.and_then(|packet| packet.ok_or(ToolError::Silent)) {
+            Ok(packet) => packet,
+            Err(fault) if rows.is_empty() => return Err(fault),
+            Err(fault) => {
+                let lost = Some(fault);
+                return Ok(Recording { rows, lost });
+            }
+        };
         if let Some((time_s, values)) = sample.take(&packet, &tables) {
             rows.push((time_s, values));
             progress(time_s);
         }
     }
-    session.command(&[0xDE, 0, 0, 0])?;
-    Ok(rows)
+    let lost = session.command(&[0xDE, 0, 0, 0]).err();
+    Ok(Recording { rows, lost })
 }
 
 fn source(reading: Reading) -> Source {
