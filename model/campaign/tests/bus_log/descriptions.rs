@@ -35,6 +35,16 @@ fn manifest(settings: &str) -> String {
     )
 }
 
+/// The manifest, the description and the log of a campaign by groups of J1939.
+pub fn described() -> [String; 3] {
+    let message = dbc(&format!("BO_ {}{MESSAGE}", 0x98FF_45FE_u32));
+    [
+        manifest("identifiers = \"j1939\"\n"),
+        message,
+        log("0CFF4521"),
+    ]
+}
+
 #[test]
 fn a_group_is_heard_from_another_address_and_said_to_be_one() {
     // 0x98FF45FE: group 0xFF45 with priority 6 from the null address, as DBCs of J1939 have it.

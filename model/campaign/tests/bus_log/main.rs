@@ -1,5 +1,6 @@
 //! Tests of runs from logs of a CAN bus: formats, descriptions, and faults.
 
+mod damaged;
 mod descriptions;
 mod faults;
 mod logs;
