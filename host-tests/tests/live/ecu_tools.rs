@@ -66,31 +66,6 @@ fn a_campaign_is_recorded_and_a_calibration_comes_back_from_flash() {
     assert_eq!(stored.position.approach_gain.0, 33);
 }
 
-/// The adapter is pulled out, or the tractor is switched off.
-#[test]
-fn what_was_recorded_until_the_connection_is_lost_is_kept() {
-    let dir = tempfile::tempdir().unwrap();
-    let folder = dir.path();
-    let mut ecu = RunningEcu::start(folder);
-    sleep(Duration::from_millis(1_200));
-    let recorder = hitch()
-        .args(["record", "--can", &ecu.bus, "--out", "c", "--load", "150"])
-        .args(["--temperature", "40", "--seconds", "60"])
-        .current_dir(folder)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    sleep(Duration::from_millis(2_500));
-    ecu.quit();
-    let recorded = recorder.wait_with_output().unwrap();
-    assert!(!recorded.status.success());
-    assert!(said(&recorded).contains("is kept"), "{}", said(&recorded));
-    let campaign = Campaign::load(&folder.join("c")).unwrap();
-    let samples = campaign.runs[0].time_s.len();
-    assert!((100..=300).contains(&samples), "{samples} samples");
-}
-
 #[test]
 fn a_safety_value_becomes_looser_with_the_key_only() {
     let dir = tempfile::tempdir().unwrap();

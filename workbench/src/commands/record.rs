@@ -60,7 +60,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let lost = lost.or(session.close().err());
     drop(progress);
     if let Some(fault) = lost.as_ref().filter(|_| rows.len() < Run::FEWEST_SAMPLES) {
-        return Err(Error::Failed(format!(
+        return Err(Error::Usage(format!(
             "{fault}; too few samples until then to keep"
         )));
     }
@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let kept = format!("{} samples of {file} in {}", rows.len(), args.out.display());
     match lost {
         None => output::print(&(wrapped(&kept) + "\n")),
-        Some(fault) => Err(Error::Failed(format!(
+        Some(fault) => Err(Error::Usage(format!(
             "{fault}; what was recorded until then is kept: {kept}"
         ))),
     }
