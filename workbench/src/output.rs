@@ -105,6 +105,17 @@ pub fn check_folder(path: &Path) -> Result<(), Error> {
         })
 }
 
+/// Creates a folder and those above it, unless they exist.
+///
+/// # Errors
+/// If one cannot be created.
+pub fn create_folder(path: &Path) -> Result<(), Error> {
+    fs::create_dir_all(path).map_err(|source| Error::Write {
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
 /// Checks a name for a file.
 fn check_name(path: &Path) -> io::Result<()> {
     if path.is_dir() {

@@ -19,6 +19,7 @@ mod loop_scenarios;
 mod other_valves;
 mod schema;
 mod shell;
+mod simulate;
 mod small_campaign;
 mod tune;
 mod your_own_hitch;

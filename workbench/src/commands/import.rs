@@ -1,6 +1,5 @@
 //! `hitch import`: creates a campaign from the files of any logger, which are read in place.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use hitch_campaign::Run;
@@ -92,10 +91,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         logs,
         model.linkage(),
     )?;
-    fs::create_dir_all(&args.out).map_err(|source| Error::Write {
-        path: args.out.clone(),
-        source,
-    })?;
+    output::create_folder(&args.out)?;
     output::write_file(&manifest, text.as_bytes())?;
     output::print(&told(args, &notes, &campaign.runs))
 }

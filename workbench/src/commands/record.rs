@@ -64,10 +64,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
             "{fault}; too few samples until then to keep"
         )));
     }
-    fs::create_dir_all(&args.out).map_err(|source| Error::Write {
-        path: args.out.clone(),
-        source,
-    })?;
+    output::create_folder(&args.out)?;
     let file = free_name(&args.out);
     output::write_file(&args.out.join(&file), log(&rows).as_bytes())?;
     let run = format!(

@@ -53,7 +53,7 @@ pub struct Parameter {
     pub max: i32,
 }
 
-/// What a side has said of itself.
+/// The inputs, outputs and parameters of a side.
 #[derive(Clone, Debug, Default)]
 pub struct Interface {
     /// Names of the inputs, in their order.

@@ -41,7 +41,7 @@ impl Program {
     /// Starts it.
     ///
     /// # Errors
-    /// If it can't be started or tells no interface.
+    /// If it cannot be started, or does not write its interface.
     pub fn start(name: &str, program: &Path) -> Result<Self> {
         let mut child = Command::new(program)
             .stdin(Stdio::piped())

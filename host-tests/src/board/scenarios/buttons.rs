@@ -50,7 +50,7 @@ pub fn longest_travel(setup: &Setup) -> Result<String> {
     ))
 }
 
-/// A fault of the contacts: its description, its time after the start, ms, the contacts, and the code that tells it.
+/// A fault of the contacts: its description, its time after the start, ms, the contacts, and its trouble code.
 type ContactFault<'a> = (&'a str, usize, &'a [(Contact, bool)], Trouble);
 
 /// Contacts that say nothing of a press: no coil is driven, and a trouble code says why.

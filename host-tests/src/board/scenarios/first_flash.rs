@@ -7,7 +7,7 @@ use hitch_protocols::j1939::{Id, Pgn, Trouble};
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};
-use crate::board::{Conditions, Contents};
+use crate::board::Conditions;
 
 /// Time within which all active codes are broadcast at least once after an address is claimed, ms.
 pub const REPORTED_MS: usize = 1_500;
@@ -73,12 +73,7 @@ fn with_oscillators<'m>(
         internal_hz,
         ..typical
     };
-    Rig::new(
-        setup,
-        model,
-        Contents::erased(setup.layout.part()),
-        conditions,
-    )
+    Rig::erased(setup, model, conditions)
 }
 
 /// A sound crystal is used with the slowest and the fastest internal oscillator of the data sheet. Further off than these

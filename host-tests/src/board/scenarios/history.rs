@@ -207,12 +207,7 @@ pub fn compaction(setup: &Setup) -> Result<String> {
         slow_clock_hz: fastest_hz,
         ..Conditions::typical(setup.layout)
     };
-    let mut rig = Rig::new(
-        setup,
-        &model,
-        Contents::erased(setup.layout.part()),
-        conditions,
-    )?;
+    let mut rig = Rig::erased(setup, &model, conditions)?;
     compacts(
         setup,
         &mut rig,

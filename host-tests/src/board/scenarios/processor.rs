@@ -5,7 +5,7 @@ use hitch_plant::Model;
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};
-use crate::board::{Board, Conditions, Contents, Part, Stop};
+use crate::board::{Board, Conditions, Part, Stop};
 
 /// Time within which the watchdog resets a dead program at the slowest oscillator, and the pins are low, ms.
 const WATCHDOG_MS: f64 = 20.0;
@@ -17,12 +17,7 @@ fn lifted<'m>(setup: &Setup, model: &'m Model) -> Result<Rig<'m>> {
 
 /// A hitch that is lifted at full speed.
 fn lifted_in<'m>(setup: &Setup, model: &'m Model, conditions: Conditions) -> Result<Rig<'m>> {
-    let mut rig = Rig::new(
-        setup,
-        model,
-        Contents::erased(setup.layout.part()),
-        conditions,
-    )?;
+    let mut rig = Rig::erased(setup, model, conditions)?;
     rig.pick_up()?;
     rig.lever(125.0, 700)?;
     ensure!(rig.is_driven(), "the hitch isn't lifted");
@@ -215,12 +210,7 @@ pub fn damaged_ram(setup: &Setup) -> Result<String> {
         stuck_ram: Some(0x2001_1004),
         ..Conditions::typical(setup.layout)
     };
-    let mut rig = Rig::new(
-        setup,
-        &model,
-        Contents::erased(setup.layout.part()),
-        conditions,
-    )?;
+    let mut rig = Rig::erased(setup, &model, conditions)?;
     for step in 0..READY_MS + 400 {
         rig.tick_with(|_| {})?;
         ensure!(!rig.is_driven(), "a coil is driven after {step} ms");

@@ -49,14 +49,19 @@ impl<'m> Rig<'m> {
         })
     }
 
-    /// The same with erased flash and typical conditions.
-    pub fn typical(setup: &Setup, model: &'m Model) -> Result<Self> {
+    /// The same with erased flash.
+    pub fn erased(setup: &Setup, model: &'m Model, conditions: Conditions) -> Result<Self> {
         Self::new(
             setup,
             model,
             Contents::erased(setup.layout.part()),
-            Conditions::typical(setup.layout),
+            conditions,
         )
+    }
+
+    /// The same with erased flash and typical conditions.
+    pub fn typical(setup: &Setup, model: &'m Model) -> Result<Self> {
+        Self::erased(setup, model, Conditions::typical(setup.layout))
     }
 
     /// A millisecond in which `tamper` changes the signals of sensors and wires.

@@ -4,17 +4,12 @@ use anyhow::{Result, ensure};
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};
-use crate::board::{Conditions, Contents, Operation, Stop};
+use crate::board::{Conditions, Operation, Stop};
 
 /// Frames of the address claim and the status show that the application runs.
 fn starts(setup: &Setup, conditions: Conditions) -> Result<f64> {
     let model = hitch_model_file::nominal();
-    let mut rig = Rig::new(
-        setup,
-        &model,
-        Contents::erased(setup.layout.part()),
-        conditions,
-    )?;
+    let mut rig = Rig::erased(setup, &model, conditions)?;
     let mut ready_ms = None;
     for millisecond in 0..READY_MS + 300 {
         rig.tick_with(|_| {})?;
@@ -86,12 +81,7 @@ pub fn dead_crystal(setup: &Setup) -> Result<String> {
         crystal_start_ns: None,
         ..Conditions::typical(setup.layout)
     };
-    let mut rig = Rig::new(
-        setup,
-        &model,
-        Contents::erased(setup.layout.part()),
-        conditions,
-    )?;
+    let mut rig = Rig::erased(setup, &model, conditions)?;
     for _ in 0..1_500 {
         rig.tick_with(|_| {})?;
         ensure!(!rig.is_driven(), "a coil is driven without a crystal");

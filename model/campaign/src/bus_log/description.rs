@@ -58,8 +58,8 @@ impl Description {
         Self { is_j1939, ..self }
     }
 
-    /// Whether frames of a log come only by the groups of messages: from other addresses, or with other priorities. An
-    /// identifier or a group of several messages tells nothing.
+    /// Whether frames of a log come only by the groups of messages: from other addresses, or with other priorities. A
+    /// group of several messages does not count.
     pub fn is_heard_by_group(&self, ids: &[Id]) -> bool {
         let exact: Vec<Match> = self.messages().iter().map(|m| self.matching(m)).collect();
         let is_known = |id: &Id| exact.iter().any(|matching| matching.sender(*id).is_some());

@@ -24,7 +24,7 @@ struct Entry {
     equation: &'static str,
     /// Where the equation and the ranges are from.
     source: &'static str,
-    /// What shows it in a measurement, and what it is confounded with.
+    /// Where a measurement shows it, and which effects look the same.
     shows: &'static str,
     /// The channels that show it.
     channels: Vec<&'static str>,

@@ -1,6 +1,5 @@
 //! A folder of simulated runs that is a campaign.
 
-use std::cell::RefCell;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::fs;
@@ -13,18 +12,13 @@ use hitch_plant::Channel;
 use crate::error::Error;
 use crate::output;
 
-/// A new campaign.
+/// A new campaign, with the runs so far.
 pub struct Folder {
     path: PathBuf,
-    runs: RefCell<Runs>,
-}
-
-/// The runs so far.
-#[derive(Default)]
-struct Runs {
+    /// Names of the logs.
     names: HashSet<String>,
-    /// Their tables in the manifest.
-    manifest: String,
+    /// Tables of the runs in the manifest.
+    runs: String,
 }
 
 impl Folder {
@@ -44,7 +38,8 @@ impl Folder {
         output::check_folder(path)?;
         Ok(Self {
             path: path.to_path_buf(),
-            runs: RefCell::default(),
+            names: HashSet::new(),
+            runs: String::new(),
         })
     }
 
@@ -52,13 +47,9 @@ impl Folder {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn add(&self, run: &Run, log: &str) -> Result<(), Error> {
-        let runs = &mut *self.runs.borrow_mut();
-        let name = free_name(&run.file, &mut runs.names);
-        fs::create_dir_all(&self.path).map_err(|source| Error::Write {
-            path: self.path.clone(),
-            source,
-        })?;
+    pub fn add(&mut self, run: &Run, log: &str) -> Result<(), Error> {
+        let name = free_name(&run.file, &mut self.names);
+        output::create_folder(&self.path)?;
         output::write_file(&self.path.join(&name), log.as_bytes())?;
         let (bench, condition) = match run.bench {
             Bench::Hitch { load_kg } => ("hitch", format!("load_kg = {load_kg:?}")),
@@ -68,7 +59,7 @@ impl Folder {
         };
         // Writing to a string cannot fail.
         let _ = write!(
-            runs.manifest,
+            self.runs,
             "\n[[run]]\nfile = {}\nbench = \"{bench}\"\n{condition}\noil_temperature_c = {:?}\n",
             quoted(&name),
             run.oil_temperature_c
@@ -85,7 +76,7 @@ impl Folder {
         let name = quoted(&name.to_string_lossy());
         let head = format!("format = 1\nname = {name}\ndescription = \"Simulated\"\n");
         let noise = simulated.map_or(String::new(), noise);
-        let text = head + &noise + &self.runs.into_inner().manifest;
+        let text = head + &noise + &self.runs;
         output::write_file(&self.path.join("campaign.toml"), text.as_bytes())
     }
 }

@@ -83,26 +83,26 @@ impl Args {
 
     /// Simulates several logs under the same conditions to a folder.
     fn simulate_logs(&self, paths: &[PathBuf]) -> Result<(), Error> {
-        let folder = Folder::new(&self.out)?;
+        let mut folder = Folder::new(&self.out)?;
         let model = self.model.load()?;
         let bench = self.bench(&model);
         let read = |path: &PathBuf| Run::read(path, bench, self.oil_temperature);
         let runs: Result<Vec<Run>, _> = paths.iter().map(read).collect();
-        self.simulate_runs(&folder, &model, &runs?)?;
+        self.simulate_runs(&mut folder, &model, &runs?)?;
         folder.finish(None)
     }
 
     /// Simulates the runs of a campaign to a folder.
     fn simulate_campaign(&self, path: &Path) -> Result<(), Error> {
-        let folder = Folder::new(&self.out)?;
+        let mut folder = Folder::new(&self.out)?;
         let model = self.model.load()?;
         let campaign = Campaign::load_with(path, model.linkage())?;
-        self.simulate_runs(&folder, &model, &campaign.runs)?;
+        self.simulate_runs(&mut folder, &model, &campaign.runs)?;
         folder.finish(Some(&campaign))
     }
 
     /// Simulates runs in their order and adds them to a folder.
-    fn simulate_runs(&self, folder: &Folder, model: &Model, runs: &[Run]) -> Result<(), Error> {
+    fn simulate_runs(&self, folder: &mut Folder, model: &Model, runs: &[Run]) -> Result<(), Error> {
         let progress = Progress::start("simulating");
         for run in runs {
             progress.say(format!("simulating {}", run.file));

@@ -5,7 +5,7 @@
 //! would run the core beyond its limits.
 //!
 //! The internal oscillator is the measure, and its data sheet says how good it is. Limits narrower than that would refuse a sound
-//! board in the cold. An error of the crystal inside of them cannot be told from one of the measure.
+//! board in the cold. Within the limits, an error of the crystal looks the same as an error of the internal oscillator.
 
 use super::part;
 use super::part::slow_clock;
