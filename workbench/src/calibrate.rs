@@ -95,6 +95,10 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     if let Some(width_a) = found(model, "solenoid-hysteresis") {
         hydraulics.hysteresis = MilliAmp((width_a * 1e3).round() as i32);
     }
+    // The form with dead time as well: its first value is the delay behind a steady motion.
+    if let Some(lag_s) = found(model, "angle-sensor-lag") {
+        calibration.sensors.angle_lag = Millisecond((lag_s * 1e3).round() as i32);
+    }
     calibration
         .sealed()
         .validate()

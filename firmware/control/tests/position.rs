@@ -121,6 +121,7 @@ fn resting_at(at_um: i32) -> MotionObserver {
     let mut motion = MotionObserver::default();
     motion.update(
         Micrometre(at_um),
+        None,
         Phase::Holding,
         &Calibration::nominal().motion,
     );
@@ -219,7 +220,7 @@ fn the_coil_is_cut_where_the_closing_valve_carries_the_hitch_to_its_set_point() 
     for _ in 0..400 {
         motion.apply_currents(currents, false, scale, &calibration);
         at_um += motion.model_speed().0 / 1_000;
-        motion.update(Micrometre(at_um), phase, &calibration.motion);
+        motion.update(Micrometre(at_um), None, phase, &calibration.motion);
     }
     let stop_prediction = motion.stop_prediction(&calibration.hydraulics);
     let cut = stop_prediction

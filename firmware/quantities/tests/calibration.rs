@@ -2,7 +2,7 @@
 
 use hitch_quantities::calibration::CALIBRATION_BYTES;
 use hitch_quantities::calibration::parameter::ParameterGroup;
-use hitch_quantities::units::{MicroLitrePerSecond, Micrometre, MilliDegree};
+use hitch_quantities::units::{MicroLitrePerSecond, Micrometre, MilliDegree, Millisecond};
 use hitch_quantities::{Calibration, CalibrationError};
 
 fn refused(change: impl FnOnce(&mut Calibration)) -> CalibrationError {
@@ -108,6 +108,13 @@ fn crossed_limits_and_other_layouts_are_refused() {
         CalibrationError::Crossed {
             group: "position",
             ..
+        }
+    ));
+    assert!(matches!(
+        refused(|c| c.sensors.angle_lag = Millisecond(481)),
+        CalibrationError::AngleLag {
+            found: Millisecond(481),
+            most: Millisecond(480)
         }
     ));
     assert!(matches!(

@@ -44,6 +44,8 @@ pub struct AngleWatch {
     noise: NoiseDetector,
     /// Mean magnitude of the second difference, times [`NOISE_SAMPLES`].
     noise_sum: i32,
+    /// Piston travel, upwards, that a sensor with lag has yet to show, by the valve curves, nm.
+    hidden_nm: i32,
     /// Since the coil was switched on.
     stroke: Option<Stroke>,
     /// A hitch that was lowered stands still, and the command has not been off since.
@@ -57,6 +59,8 @@ struct Stroke {
     first: MilliDegree,
     /// Furthest such angle.
     furthest: MilliDegree,
+    /// How far the sensor may go back, as it still shows an earlier motion.
+    settling: MilliDegree,
     /// Travel required and seen.
     following: FollowingMonitor,
 }
@@ -176,6 +180,7 @@ impl AngleWatch {
         limits: Limits<'_>,
         faults: &mut AngleFaults,
     ) {
+        self.follow_hidden(passed, limits);
         let lifting = passed.lift > MilliAmp::ZERO;
         let energised = lifting || passed.lower > MilliAmp::ZERO;
         let Some(samples) = self.samples.as_ref().filter(|_| energised) else {
@@ -188,15 +193,17 @@ impl AngleWatch {
             false => -angle,
         };
         let newest = along(samples.newest());
+        let settling = settling(self.hidden_nm, lifting, shown.mean, limits);
         let stroke = self.stroke.get_or_insert(Stroke {
             first: newest,
             furthest: newest,
+            settling,
             following: FollowingMonitor::default(),
         });
         if believed.is_some() {
             stroke.furthest = stroke.furthest.max(newest);
             let most = limits.safety.contradiction;
-            let back = stroke.furthest - newest > most;
+            let back = stroke.furthest - newest > most + stroke.settling;
             // A hitch that was lowered far and comes up again has bounced off the ground: nothing is swapped.
             let bounced = back && !lifting && stroke.furthest - stroke.first > most;
             self.ground_contact |= bounced;
@@ -212,4 +219,24 @@ impl AngleWatch {
         faults.not_following = fault && !same;
         self.ground_contact |= stands == Some(Standstill::GroundContact);
     }
+
+    /// The part of the travel that a sensor with lag has yet to show.
+    fn follow_hidden(&mut self, passed: CoilCurrents, limits: Limits<'_>) {
+        let given = limits.machine.signed_speed(passed).0;
+        let lag = limits.sensors.angle_lag.divisor();
+        self.hidden_nm = self.hidden_nm.saturating_add(given);
+        self.hidden_nm = self.hidden_nm.saturating_sub(lag.divide(self.hidden_nm));
+    }
+}
+
+/// How far a sensor with lag may go against a coil that is switched on now: twice what it has yet to show of a motion
+/// the other way. A heavy load sinks by 1.3 times the curve's speed, and a spool that closes 40 ms late leaves 1.5 times
+/// of it at 0.1 s of lag, less at a longer one.
+fn settling(hidden_nm: i32, lifting: bool, angle: MilliDegree, limits: Limits<'_>) -> MilliDegree {
+    let against = match lifting {
+        true => hidden_nm.saturating_neg(),
+        false => hidden_nm,
+    };
+    let micrometre = against.max(0) / 1_000;
+    MilliDegree(micrometre.saturating_mul(limits.machine.degrees(angle)) / 1_000 * 2)
 }

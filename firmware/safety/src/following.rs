@@ -31,6 +31,7 @@
 //! * The lags cover slow spools, and loads on oil with air. A falling current reduces the required speed at once: no
 //!   spool
 //!   closes faster.
+//! * The sensor lags in addition (`sensors.angle_lag`), before and after motion. What it has lately shown needs no lag.
 //! * Share and following speed cover a load that stands still behind an open valve. A braked load on soft oil
 //!   oscillates, and
 //!   stands still for up to 0.1 s at its reversals. A load that is lifted from the ground first moves by the spring of
@@ -113,8 +114,17 @@ impl<'a> MachineModel<'a> {
         piston_speed(table.flow(current - margin), self.hydraulics.piston_area)
     }
 
+    /// Signed piston speed that the currents give by the valve curves, upwards.
+    pub(crate) fn signed_speed(self, passed: CoilCurrents) -> MicrometrePerSecond {
+        let speed = self.speed(passed, MilliAmp::ZERO);
+        match passed.lift > MilliAmp::ZERO {
+            true => speed,
+            false => -speed,
+        }
+    }
+
     /// Rocker angle for a piston travel of a millimetre at an angle, in thousandths of a degree.
-    fn degrees(self, angle: MilliDegree) -> i32 {
+    pub(crate) fn degrees(self, angle: MilliDegree) -> i32 {
         let half = MilliDegree(1_000);
         let way = self.linkage.travel(angle + half) - self.linkage.travel(angle - half);
         2_000_000 / way.0.max(1)
@@ -160,11 +170,15 @@ pub struct FollowingMonitor {
     predicted_udeg: i32,
     /// The part of it that was given by currents above the threshold and the margin.
     required_udeg: i32,
+    /// The part of that which the sensor has yet to show.
+    hidden_udeg: i32,
     /// Rocker angle for a piston travel of a millimetre here, in thousandths of a degree.
     degrees: i32,
     /// Expected piston speed along the coil's way, of a hitch that has started, and of one that lately moved.
     expected: ExpectedSpeed,
     running: ExpectedSpeed,
+    /// The former, behind the lag of the sensor.
+    shown: MicrometrePerSecond,
     /// Travel that is required since the hitch was at `from`, in nanometres.
     required_nm: i32,
     from: Option<Micrometre>,
@@ -231,9 +245,9 @@ impl FollowingMonitor {
                 }
                 let held = held || slow_start;
                 let allowance = onset_allowance(angle, lifts, machine, safety);
-                self.onset_deficit(backwards, held, passed, machine, safety) > allowance
+                self.onset_deficit(backwards, held, passed, limits) > allowance
             }
-            true => self.exceeds_allowance(moved, along, held, passed, machine, safety),
+            true => self.exceeds_allowance(moved, along, held, passed, limits),
         };
         if self.required_nm == 0 {
             self.from = Some(along);
@@ -259,12 +273,13 @@ impl FollowingMonitor {
         backwards: bool,
         held: bool,
         passed: CoilCurrents,
-        machine: MachineModel<'_>,
-        safety: &SafetyParameters,
+        limits: Limits<'_>,
     ) -> MilliDegree {
+        let (machine, safety) = (limits.machine, limits.safety);
         if self.started || held || backwards {
             self.required_nm = 0;
             self.required_udeg = 0;
+            self.hidden_udeg = 0;
             self.predicted_udeg = 0;
             return MilliDegree::ZERO;
         }
@@ -273,8 +288,14 @@ impl FollowingMonitor {
         self.predicted_udeg = self.predicted_udeg.saturating_add(given);
         if machine.speed(passed, safety.following_margin) > MicrometrePerSecond::ZERO {
             self.required_udeg = self.required_udeg.saturating_add(given);
+            self.hidden_udeg = self.hidden_udeg.saturating_add(given);
         }
-        MilliDegree(self.required_udeg / 1_000)
+        let lag = limits.sensors.angle_lag.divisor();
+        self.hidden_udeg = self
+            .hidden_udeg
+            .saturating_sub(lag.divide(self.hidden_udeg));
+        let shown = self.required_udeg.saturating_sub(self.hidden_udeg);
+        MilliDegree(shown / 1_000)
     }
 
     /// After the start: true if the missing travel exceeds the allowance.
@@ -284,15 +305,17 @@ impl FollowingMonitor {
         along: Micrometre,
         held: bool,
         passed: CoilCurrents,
-        machine: MachineModel<'_>,
-        safety: &SafetyParameters,
+        limits: Limits<'_>,
     ) -> bool {
+        let (machine, safety) = (limits.machine, limits.safety);
         let lag = safety.following_lag.divisor();
         let margin = safety.following_margin;
         self.expected
             .follow(machine.speed(passed, margin), safety.started_lag.divisor());
         self.running
             .follow(machine.speed(passed, MilliAmp(margin.0 / 2)), lag);
+        let sensor = limits.sensors.angle_lag.divisor();
+        self.shown = behind(self.expected.speed, self.shown, sensor);
         self.average_speed(along);
         let required = self.required_speed(safety);
         self.required_nm = self.required_nm.saturating_add(required.0);
@@ -320,7 +343,7 @@ impl FollowingMonitor {
     /// Required speed: a share of the expected one, or half of the recent measured speed that the current still gives.
     fn required_speed(&self, safety: &SafetyParameters) -> MicrometrePerSecond {
         let half = |speed: MicrometrePerSecond| MicrometrePerSecond(speed.0 / 2);
-        let expected = self.expected.speed;
+        let expected = self.shown;
         let started = expected.scaled(safety.following_share.0, Divisor::at_least_one(1_000));
         let least = half(expected).min(safety.following_speed);
         let lately = MicrometrePerSecond(self.measured_speed_sum / AVERAGE_STEPS);
@@ -340,13 +363,19 @@ struct ExpectedSpeed {
 impl ExpectedSpeed {
     /// One step: rises slowly towards `target`, falls with it.
     fn follow(&mut self, target: MicrometrePerSecond, lag: Divisor) {
-        let behind = |target: MicrometrePerSecond, speed: MicrometrePerSecond| {
-            let step = lag.divide((target - speed).0);
-            target.min(speed + MicrometrePerSecond(step))
-        };
-        self.opening = behind(target, self.opening);
-        self.speed = behind(self.opening, self.speed);
+        self.opening = behind(target, self.opening, lag);
+        self.speed = behind(self.opening, self.speed, lag);
     }
+}
+
+/// One step of a speed that rises slowly towards `target`, and falls with it.
+fn behind(
+    target: MicrometrePerSecond,
+    speed: MicrometrePerSecond,
+    lag: Divisor,
+) -> MicrometrePerSecond {
+    let step = lag.divide((target - speed).0);
+    target.min(speed + MicrometrePerSecond(step))
 }
 
 /// Allowed missing travel at the start: more at the lower end stop, which carried the load.

@@ -11,6 +11,7 @@ mod frozen_angle;
 mod position;
 mod power_cut;
 mod rate;
+mod sensor_lag;
 mod start_up;
 mod teach;
 mod traces;

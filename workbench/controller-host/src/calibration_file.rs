@@ -324,6 +324,15 @@ fn objection(error: CalibrationError) -> (&'static str, String, &'static str) {
             format!("{low} of [{group}] is not below {high}"),
             "exchange them",
         ),
+        E::AngleLag { found, most } => (
+            "sensors",
+            format!(
+                "angle_lag_ms of [sensors] is {}, and at most {} with the onset speeds of [safety]: a frozen angle would \
+                 cost too much travel",
+                found.0, most.0
+            ),
+            "use a faster sensor or filter, or lower lift_onset_speed and lower_onset_speed of [safety]",
+        ),
         E::Parameter { group, what } => (
             group,
             format!("{} of [{group}] is out of range", key(what.parameter)),

@@ -12,7 +12,7 @@ use hitch_quantities::units::Micrometre;
 use super::threshold_offset::ThresholdOffsets;
 use crate::estimation::motion_observer::MotionObserver;
 use crate::estimation::move_record::{MoveRecord, MoveRecorder};
-use crate::valve::phase::{Direction, Phase};
+use crate::valve::phase::Direction;
 
 /// A lift that overshoots by more than this has an oscillating load: 0.6 degree.
 const OVERSHOOT_LIMIT: Micrometre = Micrometre(1_000);
@@ -64,9 +64,9 @@ impl ValveAdaptation {
         self.offsets = ThresholdOffsets::default();
     }
 
-    /// One step of a move; the recorder once the move is finished.
-    pub fn follow(&mut self, phase: Phase, motion: &MotionObserver) -> Option<MoveRecorder> {
-        match self.recorder.as_mut()?.step(phase, motion) {
+    /// One step of a move; the recorder once the move is finished. `rests`: see [`MoveRecorder::step`].
+    pub fn follow(&mut self, rests: bool, motion: &MotionObserver) -> Option<MoveRecorder> {
+        match self.recorder.as_mut()?.step(rests, motion) {
             true => self.recorder.take(),
             false => None,
         }
@@ -101,7 +101,7 @@ mod tests {
                 !swings
             );
             assert_eq!(motion.has_compensator_oscillation(), swings);
-            let record = adaptation.follow(Phase::Holding, &motion);
+            let record = adaptation.follow(true, &motion);
             assert_eq!(record.is_some(), !swings, "{direction:?}");
             assert!(!adaptation.finish_before_correction(overshoot, &mut motion));
         }

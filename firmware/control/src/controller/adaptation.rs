@@ -1,10 +1,13 @@
 //! State estimation and adaptation of one step.
 
 use hitch_quantities::CoilCurrents;
+use hitch_quantities::units::{Micrometre, Millisecond};
 
 use super::Control;
+use crate::estimation::delayed_output::LaggingAngle;
 use crate::operator::mode::Mode;
 use crate::sensing::sensors::Sensed;
+use crate::valve::phase::Phase;
 
 impl Control {
     /// Takes in the currents that are regulated in this step.
@@ -23,10 +26,17 @@ impl Control {
     pub(super) fn observe(&mut self, sensed: &Sensed) {
         let calibration = &self.calibration;
         let measured = calibration.linkage.travel(sensed.angle);
+        let (phase, lag) = (self.phase, calibration.sensors.angle_lag);
+        let lagging = LaggingAngle {
+            angle: sensed.angle,
+            lag,
+            linkage: &calibration.linkage,
+        };
+        let lagging = (lag > Millisecond::ZERO).then_some(&lagging);
         self.motion
-            .update(measured, self.phase, &calibration.motion);
+            .update(measured, lagging, phase, &calibration.motion);
         self.motion
-            .update_spool_lag(measured, self.phase, &calibration.motion);
+            .update_spool_lag(measured, phase, &calibration.motion, lag);
         self.load.update(
             sensed.cylinder_pressure,
             self.phase,
@@ -34,24 +44,35 @@ impl Control {
             &calibration.hydraulics,
         );
         self.scale = self.curves.scale(self.load.drop());
+        let rests = matches!(self.phase, Phase::Holding) && self.angle_has_settled();
         self.rest
-            .update(self.motion.position(), self.phase, &calibration.hold);
+            .update(self.motion.position(), rests, &calibration.hold);
         self.drift.tick(&calibration.hold);
-        self.adapt();
+        self.adapt(rests);
     }
 
-    /// Adapts spool lag and threshold offset once a move is finished.
-    fn adapt(&mut self) {
-        let Some(recorder) = self.adaptation.follow(self.phase, &self.motion) else {
+    /// True if the angle sensor shows where the hitch is. A lag that is a fifth off makes the estimate wrong by a fifth of
+    /// the distance that the signal trails by: that may be half of the restart band, as much remains for the place where
+    /// a move ends.
+    pub(super) fn angle_has_settled(&self) -> bool {
+        let band = self.position.bands(&self.calibration.position).restart_band;
+        self.motion
+            .is_shown_within(Micrometre(band.0.saturating_mul(5) / 2))
+    }
+
+    /// Adapts spool lag and threshold offset once a move is finished. `rests`: and the angle sensor shows it.
+    fn adapt(&mut self, rests: bool) {
+        let Some(recorder) = self.adaptation.follow(rests, &self.motion) else {
             return;
         };
         let calibration = &self.calibration;
         let rest = self.rest.position();
         let record = recorder.result(rest, self.scale, calibration.hydraulics.piston_area);
+        let lag = calibration.sensors.angle_lag;
         let of_offset = self.adaptation.offsets().attributed_to_offset(&record);
         if self
             .motion
-            .learn_from_move(&record, of_offset, rest, &calibration.motion)
+            .learn_from_move(&record, of_offset, rest, &calibration.motion, lag)
         {
             self.adaptation.learn(&record);
         }

@@ -93,19 +93,8 @@ impl Control {
             self.target = (set_point, calibration.linkage.travel(set_point));
         }
         let target = self.target.1;
-        // The hitch may pass the set point while the valves close: only a hitch at rest has arrived.
-        let rest = self.rest.position();
-        let resting = matches!(self.phase, Phase::Holding)
-            && match self
-                .position
-                .reason_to_move(target, rest, &calibration.position)
-            {
-                Some(MoveReason::SetPoint) => false,
-                Some(MoveReason::Drift) => self
-                    .adaptation
-                    .finish_before_correction(rest - target, &mut self.motion),
-                None => true,
-            };
+        let resting = matches!(self.phase, Phase::Holding) && self.stays(target);
+        let calibration = &self.calibration;
         let floats = self
             .float
             .update(lever, sensed.angle, resting, &calibration.operator);
@@ -113,6 +102,27 @@ impl Control {
             return None;
         }
         Some(target)
+    }
+
+    /// True if a hitch that holds has no reason to move, or if that has yet to be known.
+    ///
+    /// The hitch may pass the set point while the valves close: only a hitch at rest has arrived. Whether it is off its
+    /// set point is known once the angle sensor has settled; a new set point needs no such wait.
+    fn stays(&mut self, target: Micrometre) -> bool {
+        if self.position.has_moved() && !self.angle_has_settled() {
+            return true;
+        }
+        let rest = self.rest.position();
+        match self
+            .position
+            .reason_to_move(target, rest, &self.calibration.position)
+        {
+            Some(MoveReason::SetPoint) => false,
+            Some(MoveReason::Drift) => self
+                .adaptation
+                .finish_before_correction(rest - target, &mut self.motion),
+            None => true,
+        }
     }
 
     /// Position law: from the distance to the target to the demanded speed.

@@ -2,6 +2,7 @@
 
 pub mod compensator_oscillation;
 pub mod damping;
+pub mod delayed_output;
 pub mod free_fall;
 pub mod hysteresis_compensation;
 pub mod load;

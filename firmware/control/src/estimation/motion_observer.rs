@@ -9,7 +9,7 @@
 //! ```
 //!
 //! `b` is the speed error of the valve map (a shifted threshold, an unknown load). It is adapted only while a move is
-//! demanded. The model of a sinking load is [`super::free_fall`]. The spool lags are identified from the position error
+//! demanded. The observer of a sensor that lags is [`super::delayed_output`]. The model of a sinking load is [`super::free_fall`]. The spool lags are identified from the position error
 //! ([`super::spool_lag`]) and kept for later moves. The position is in nanometres: a speed in um/s is then the distance
 //! of one millisecond.
 
@@ -23,6 +23,7 @@ use hitch_quantities::{Calibration, CoilCurrents};
 
 use super::compensator_oscillation::CompensatorOscillation;
 use super::damping::Damping;
+use super::delayed_output::{self, DelayedOutput, LaggingAngle};
 use super::free_fall::{free_fall_stopping_distance, next_speed};
 use super::move_record::MoveRecord;
 use super::peak_velocity_ratio::PeakVelocityRatio;
@@ -38,7 +39,8 @@ pub struct MotionObserver {
     started: bool,
     position_nm: i32,
     position: Micrometre,
-    bias_sum_nm: i32,
+    /// Sum of errors; see [`Correction`].
+    bias_sum: i32,
     bias: MicrometrePerSecond,
     /// Speed of the valve model.
     model_speed: MicrometrePerSecond,
@@ -65,19 +67,42 @@ pub struct MotionObserver {
     lower_spool: Spool,
     /// Slope dQ/dI of the open valve at its reference drop, for each ampere.
     slope: MicroLitrePerSecond,
+    /// What a sensor with lag shows.
+    output: DelayedOutput,
     /// Spool positions of lift and lowering valve, as equivalent currents.
     spools: [MilliAmp; 2],
 }
 
 impl MotionObserver {
-    /// Takes in one measurement. The speed bias is adapted only while a move is demanded.
-    pub fn update(&mut self, measured: Micrometre, phase: Phase, parameters: &MotionParameters) {
+    /// Takes in one measurement; `lagging`: that of a sensor with lag. The speed bias is adapted only while a move is
+    /// demanded.
+    pub fn update(
+        &mut self,
+        measured: Micrometre,
+        lagging: Option<&LaggingAngle<'_>>,
+        phase: Phase,
+        parameters: &MotionParameters,
+    ) {
         let measured_nm = measured.0.saturating_mul(1000);
         if !self.started {
             self.started = true;
             self.position_nm = measured_nm;
+            self.position = measured;
         }
         self.damping.step(measured_nm);
+        let correction = match lagging {
+            Some(shown) => self.delayed_correction(shown, parameters),
+            None => self.direct_correction(measured_nm, parameters),
+        };
+        self.position_nm = self.position_nm.saturating_add(correction.position_nm);
+        self.position = Micrometre(Divisor::THOUSAND.divide(self.position_nm));
+        self.update_bias(&correction, phase, parameters);
+        let lag = lagging.map_or(Millisecond::ZERO, |shown| shown.lag);
+        self.output.follow(self.speed(), self.model_speed, lag);
+    }
+
+    /// Moves the position by one step; its correction by a sensor without lag.
+    fn direct_correction(&mut self, measured_nm: i32, parameters: &MotionParameters) -> Correction {
         let (time, bias_time) = match self.sinking > MicrometrePerSecond::ZERO {
             true => (parameters.lowering_time, parameters.lowering_time),
             false => (
@@ -89,34 +114,66 @@ impl MotionObserver {
         let position_time = time.divisor();
         self.position_nm = self.position_nm.saturating_add(self.speed().0);
         let error = measured_nm.saturating_sub(self.position_nm);
-        self.position_nm = self.position_nm.saturating_add(position_time.divide(error));
-        self.position = Micrometre(Divisor::THOUSAND.divide(self.position_nm));
-        let bias_time = bias_divisor(bias_time);
+        self.output.forget();
+        Correction {
+            error,
+            position_nm: position_time.divide(error),
+            bias_sum: bias_sum(bias_time),
+            decay: position_time,
+        }
+    }
+
+    /// The same by a sensor with lag.
+    fn delayed_correction(
+        &mut self,
+        shown: &LaggingAngle<'_>,
+        parameters: &MotionParameters,
+    ) -> Correction {
+        let error = self.output.compare(shown, self.position);
+        self.position_nm = self.position_nm.saturating_add(self.speed().0);
+        Correction {
+            error,
+            position_nm: delayed_output::position_correction_nm(error),
+            bias_sum: delayed_output::BIAS_SUM,
+            decay: parameters.position_time.divisor(),
+        }
+    }
+
+    /// Integrates the error while a move is demanded.
+    fn update_bias(
+        &mut self,
+        correction: &Correction,
+        phase: Phase,
+        parameters: &MotionParameters,
+    ) {
         if phase.is_moving() {
-            let limit = parameters.bias_limit.0.saturating_mul(bias_time.1);
-            self.bias_sum_nm = self
-                .bias_sum_nm
-                .saturating_add(error)
+            let limit = parameters.bias_limit.0.saturating_mul(correction.bias_sum);
+            self.bias_sum = self
+                .bias_sum
+                .saturating_add(correction.error)
                 .max(limit.saturating_neg())
                 .min(limit);
         } else {
-            self.bias_sum_nm = self
-                .bias_sum_nm
-                .saturating_sub(position_time.divide(self.bias_sum_nm));
+            self.bias_sum = self
+                .bias_sum
+                .saturating_sub(correction.decay.divide(self.bias_sum));
         }
-        self.bias = MicrometrePerSecond(bias_time.0.divide(self.bias_sum_nm));
+        let divisor = Divisor::at_least_one(correction.bias_sum);
+        self.bias = MicrometrePerSecond(divisor.divide(self.bias_sum));
     }
 
-    /// Updates the lag estimate of the active spool, in each step of a move.
+    /// Updates the lag estimate of the active spool, in each step of a move. The motion that a sensor with lag shows does
+    /// not tell the lag of the spool from an error of its own: then nothing is estimated.
     pub fn update_spool_lag(
         &mut self,
         measured: Micrometre,
         phase: Phase,
         parameters: &MotionParameters,
+        angle_lag: Millisecond,
     ) {
         // Without flow there is no position error, and the active valve is not known.
         let flows = self.model_speed != MicrometrePerSecond::ZERO;
-        if phase == Phase::Holding || !flows {
+        if phase == Phase::Holding || !flows || angle_lag > Millisecond::ZERO {
             return;
         }
         let [lift, lower] = self.lags;
@@ -160,7 +217,12 @@ impl MotionObserver {
         of_offset: Micrometre,
         rest: Micrometre,
         parameters: &MotionParameters,
+        angle_lag: Millisecond,
     ) -> bool {
+        if angle_lag > Millisecond::ZERO {
+            self.learn_closing_delay(record.direction, rest);
+            return true;
+        }
         self.lag_regression.correct(record, of_offset);
         let limit = parameters.lag_limit.into();
         let [lift, lower] = &mut self.lags;
@@ -178,14 +240,10 @@ impl MotionObserver {
                 return false;
             }
         }
-        let [lift_delay, lower_delay] = &mut self.closing_delays;
-        let (lag, other, delay, other_delay) = match record.direction {
-            Direction::Lift => (lift, lower, lift_delay, lower_delay),
-            Direction::Lower => (lower, lift, lower_delay, lift_delay),
+        let (lag, other) = match record.direction {
+            Direction::Lift => (lift, lower),
+            Direction::Lower => (lower, lift),
         };
-        let (place, speed) = self.cut;
-        delay.learn(rest - place, speed);
-        other_delay.initialize_from(*delay);
         lag.learn(&self.lag_regression, limit);
         if record.direction == Direction::Lift {
             self.oscillation
@@ -193,7 +251,20 @@ impl MotionObserver {
         }
         other.initialize_from(*lag);
         self.lag_correction = MillisecondQ3::default();
+        self.learn_closing_delay(record.direction, rest);
         true
+    }
+
+    /// Identifies the closing delay of a valve from where the hitch came to rest.
+    fn learn_closing_delay(&mut self, direction: Direction, rest: Micrometre) {
+        let [lift, lower] = &mut self.closing_delays;
+        let (delay, other) = match direction {
+            Direction::Lift => (lift, lower),
+            Direction::Lower => (lower, lift),
+        };
+        let (place, speed) = self.cut;
+        delay.learn(rest - place, speed);
+        other.initialize_from(*delay);
     }
 
     /// A lift overshot its set point by far.
@@ -217,7 +288,7 @@ impl MotionObserver {
     pub fn damping(&self, direction: Direction) -> MicrometrePerSecond {
         match direction {
             Direction::Lift if !self.has_compensator_oscillation() => {
-                self.damping.demand(self.speed())
+                self.damping.demand(self.speed() - self.output.growth())
             }
             _ => MicrometrePerSecond::ZERO,
         }
@@ -270,10 +341,8 @@ impl MotionObserver {
     fn scale_bias_with_flow(&mut self, before: MicrometrePerSecond) {
         let fall = before.magnitude() - self.model_speed.magnitude();
         if fall > MicrometrePerSecond::ZERO {
-            let share = Divisor::at_least_one(before.magnitude().0).divide(self.bias_sum_nm);
-            self.bias_sum_nm = self
-                .bias_sum_nm
-                .saturating_sub(share.saturating_mul(fall.0));
+            let share = Divisor::at_least_one(before.magnitude().0).divide(self.bias_sum);
+            self.bias_sum = self.bias_sum.saturating_sub(share.saturating_mul(fall.0));
         }
     }
 
@@ -284,7 +353,7 @@ impl MotionObserver {
         self.uses_closing_delay = false;
         self.oscillation.begin_move();
         self.lag_correction = MillisecondQ3::default();
-        self.bias_sum_nm = 0;
+        self.bias_sum = 0;
         self.bias = MicrometrePerSecond::ZERO;
     }
 
@@ -298,6 +367,24 @@ impl MotionObserver {
     #[must_use]
     pub fn speed(&self) -> MicrometrePerSecond {
         self.model_speed + self.bias
+    }
+
+    /// Position that the angle sensor shows of a hitch at the estimated one.
+    #[must_use]
+    pub fn shown_position(&self) -> Micrometre {
+        self.position - self.output.distance()
+    }
+
+    /// Speed of the valve model behind the lag of the angle sensor.
+    #[must_use]
+    pub fn shown_model_speed(&self) -> MicrometrePerSecond {
+        self.model_speed - self.output.model_growth()
+    }
+
+    /// True if the angle sensor shows the position within this distance.
+    #[must_use]
+    pub fn is_shown_within(&self, distance: Micrometre) -> bool {
+        self.output.distance().magnitude() <= distance
     }
 
     /// Piston speed of the valve model.
@@ -390,12 +477,24 @@ fn distance_in(time: MillisecondQ3, speed: MicrometrePerSecond) -> Micrometre {
     Micrometre(MillisecondQ3::IN_SECOND.divide(speed.0.wrapping_mul(time.0)))
 }
 
-/// `4 T^2` as divisor and as number: converts the sum of position errors to the bias.
-fn bias_divisor(time: Millisecond) -> (Divisor, i32) {
+/// Correction of one step.
+#[derive(Clone, Copy, Debug)]
+struct Correction {
+    /// What the bias integrates: the position error, nm, or that of a sensor with lag, um ms.
+    error: i32,
+    /// Correction of the position, nm.
+    position_nm: i32,
+    /// Sum of errors for a bias of 1 um/s.
+    bias_sum: i32,
+    /// Time constant with which the bias decays while no move is demanded.
+    decay: Divisor,
+}
+
+/// `4 T^2`: converts the sum of position errors to the bias.
+fn bias_sum(time: Millisecond) -> i32 {
     let time = time.0.max(1);
     // Half a second at most.
-    let product = time.wrapping_mul(time).wrapping_mul(4);
-    (Divisor::at_least_one(product), product)
+    time.wrapping_mul(time).wrapping_mul(4)
 }
 
 /// Model of solenoid and spool: hysteresis (play) and first-order lag, as current on the rising branch.

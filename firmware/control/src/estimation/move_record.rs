@@ -12,7 +12,7 @@ use hitch_quantities::units::{MicroLitrePerSecond, Micrometre, Millisecond, Squa
 
 use super::motion_observer::MotionObserver;
 use crate::valve::drop_scale::DropScale;
-use crate::valve::phase::{Direction, Phase};
+use crate::valve::phase::Direction;
 
 /// Time at rest before the final position is read: oscillations of the load have decayed, and leakage is still small.
 const SETTLING_TIME: Millisecond = Millisecond(500);
@@ -62,11 +62,11 @@ impl MoveRecorder {
         self.direction
     }
 
-    /// One step. True once the hitch has been at rest for the settling time.
-    pub fn step(&mut self, phase: Phase, motion: &MotionObserver) -> bool {
+    /// One step. `rests`: the hitch rests, and its position is known. True once that was so for the settling time.
+    pub fn step(&mut self, rests: bool, motion: &MotionObserver) -> bool {
         self.expected_nm = self.expected_nm.saturating_add(motion.model_speed().0);
         self.sensitivity_nl = self.sensitivity_nl.saturating_add(motion.slope().0);
-        if phase == Phase::Holding {
+        if rests {
             self.held = self.held.next();
         }
         self.held >= SETTLING_TIME

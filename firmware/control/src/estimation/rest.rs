@@ -5,8 +5,6 @@ use hitch_quantities::calibration::design_parameters::HoldParameters;
 use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::Micrometre;
 
-use crate::valve::phase::Phase;
-
 /// Averaged position; it follows without delay at the start and while the hitch does not rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RestPosition {
@@ -15,11 +13,11 @@ pub struct RestPosition {
 }
 
 impl RestPosition {
-    /// One step.
-    pub fn update(&mut self, position: Micrometre, phase: Phase, parameters: &HoldParameters) {
-        let time = match phase {
-            Phase::Holding if self.started => parameters.rest_time.divisor(),
-            _ => Divisor::ONE,
+    /// One step. `rests`: the hitch rests, and its position is known.
+    pub fn update(&mut self, position: Micrometre, rests: bool, parameters: &HoldParameters) {
+        let time = match rests && self.started {
+            true => parameters.rest_time.divisor(),
+            false => Divisor::ONE,
         };
         self.started = true;
         let error = position

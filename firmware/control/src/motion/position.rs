@@ -128,6 +128,12 @@ impl PositionControl {
         self.arrived
     }
 
+    /// True if the next move, if any, is no longer that to the set point of the lever.
+    #[must_use]
+    pub fn has_moved(&self) -> bool {
+        self.reason() == MoveReason::Drift
+    }
+
     /// The reason for which a hitch at rest has to move to `target`, if there is one.
     pub fn reason_to_move(
         &mut self,
@@ -386,7 +392,7 @@ mod tests {
         let drop = calibration.hydraulics.reference_drop;
         let scale = DropScale::new(&DropReference::new(drop), drop);
         let mut motion = MotionObserver::default();
-        motion.update(Micrometre::ZERO, Phase::Holding, &calibration.motion);
+        motion.update(Micrometre::ZERO, None, Phase::Holding, &calibration.motion);
         let phase = Phase::Moving {
             direction: Direction::Lift,
             speed: parameters.creep_speed,

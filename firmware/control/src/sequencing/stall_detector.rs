@@ -2,7 +2,8 @@
 //!
 //! During a lift the flow equals the map only while the compensator has margin. At the relief pressure, at the end of
 //! the stroke or against an obstacle, the pump flow passes the relief valve at 154 bar instead. The detector uses the
-//! pump pressure, if there is a sensor, and always the comparison of demanded and measured travel. After a stall the
+//! pump pressure, if there is a sensor, and always the comparison of demanded and measured travel. The demanded travel is
+//! that which an angle sensor with lag would show. After a stall the
 //! coil is cut, and there are a few more attempts, each after a delay. At the end of the stroke and on the ground the
 //! hitch stays where it is until the lever is moved; this is no fault.
 
@@ -117,21 +118,26 @@ impl StallDetector {
         motion: &MotionObserver,
         parameters: &SaturationParameters,
     ) -> bool {
+        let model = direction.sign(motion.shown_model_speed().0);
+        if model < 0 {
+            // A sensor with lag still shows an earlier motion the other way.
+            self.window = None;
+            return false;
+        }
         let mut window = self.window.unwrap_or(TravelWindow {
-            start: motion.position(),
+            start: motion.shown_position(),
             demanded_nm: 0,
             age: Millisecond::ZERO,
         });
         window.age = window.age.next();
-        let model = direction.sign(motion.model_speed().0);
         window.demanded_nm = window.demanded_nm.saturating_add(model);
         self.window = Some(window);
         if window.age < parameters.window {
             return false;
         }
         self.window = None;
-        let demanded = Micrometre(window.demanded_nm.saturating_abs() / 1000);
-        let moved = Micrometre(direction.sign((motion.position() - window.start).0));
+        let demanded = Micrometre(window.demanded_nm / 1000);
+        let moved = Micrometre(direction.sign((motion.shown_position() - window.start).0));
         let stalled = demanded >= parameters.demanded_travel && moved < Micrometre(demanded.0 / 8);
         if !stalled && demanded >= parameters.demanded_travel {
             self.attempts = Count::ZERO;

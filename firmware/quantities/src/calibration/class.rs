@@ -100,7 +100,7 @@ pub const CLASSES: &[Classified] = &[
         "angle_min", "lever_min", "pressure_min", "second_track",
     ]),
     row("sensors", DOWN, &[
-        "angle_max", "angle_jump", "lever_max", "pressure_max", "bridged",
+        "angle_max", "angle_jump", "lever_max", "pressure_max", "bridged", "angle_lag",
     ]),
     row("lock", UP, &[
         "lever_movement", "healthy_time", "engine_running", "engine_settling", "engine_required",

@@ -12,7 +12,8 @@ pub mod parameter;
 pub mod valve_table;
 
 use super::crc32::Crc32;
-use super::units::{MicroLitrePerSecond, MilliAmp};
+use super::fixed::Divisor;
+use super::units::{MicroLitrePerSecond, MilliAmp, Millisecond};
 use calibration_words::CALIBRATION_WORDS;
 use design_parameters::{
     BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
@@ -133,6 +134,14 @@ pub enum CalibrationError {
         /// The limit that should be higher.
         high: &'static str,
     },
+    /// `sensors.angle_lag` is too long for the onset speeds of `safety`: before motion is detected, a frozen angle would
+    /// cost more than 5 degrees beyond what it does without a lag.
+    AngleLag {
+        /// What was found.
+        found: Millisecond,
+        /// Longest lag with these onset speeds.
+        most: Millisecond,
+    },
 }
 
 /// A calibration that has been checked.
@@ -244,6 +253,7 @@ impl Calibration {
         check_valve("lower", &self.lower)?;
         check_linkage(&self.linkage)?;
         self.check_order()?;
+        self.check_angle_lag()?;
         Ok(ValidCalibration(self))
     }
 
@@ -337,6 +347,23 @@ impl Calibration {
             }
         }
         Ok(())
+    }
+
+    /// While the sensor has yet to show a motion, the hitch goes on with an onset speed: lag times speed is at most the 5
+    /// degrees that a time of the envelope may allow.
+    fn check_angle_lag(&self) -> Result<(), CalibrationError> {
+        /// 5 degrees at 1.92 mm a degree, in nm.
+        const EXTRA_TRAVEL: i32 = 9_600_000;
+        let safety = &self.safety;
+        let speed = safety.lift_onset_speed.max(safety.lower_onset_speed);
+        let found = self.sensors.angle_lag;
+        // A speed in um/s is the way of a millisecond in nm.
+        let most = Divisor::at_least_one(speed.0).quotient(EXTRA_TRAVEL.unsigned_abs());
+        let most = Millisecond(most.cast_signed());
+        match found > most {
+            true => Err(CalibrationError::AngleLag { found, most }),
+            false => Ok(()),
+        }
     }
 
     /// The memory image, words in little-endian order.
