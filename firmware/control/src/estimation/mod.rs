@@ -10,5 +10,6 @@ pub mod motion_observer;
 pub mod move_record;
 pub mod peak_velocity_ratio;
 pub mod rest;
+pub mod spool;
 pub mod spool_lag;
 pub mod valve_closing_delay;

@@ -27,6 +27,7 @@ use super::delayed_output::{self, DelayedOutput, LaggingAngle};
 use super::free_fall::{free_fall_stopping_distance, next_speed};
 use super::move_record::MoveRecord;
 use super::peak_velocity_ratio::PeakVelocityRatio;
+use super::spool::Spool;
 use super::spool_lag::{LagRegression, MillisecondQ3, SpoolLagEstimator, nominal_lags};
 use super::valve_closing_delay::ValveClosingDelay;
 use crate::valve::closing::ClosingCurves;
@@ -495,26 +496,4 @@ fn bias_sum(time: Millisecond) -> i32 {
     let time = time.0.max(1);
     // Half a second at most.
     time.wrapping_mul(time).wrapping_mul(4)
-}
-
-/// Model of solenoid and spool: hysteresis (play) and first-order lag, as current on the rising branch.
-#[derive(Clone, Copy, Debug, Default)]
-struct Spool {
-    play: MilliAmp,
-    microampere: i32,
-}
-
-impl Spool {
-    fn follow(&mut self, coil: MilliAmp, hysteresis: MilliAmp, lag: Divisor) -> MilliAmp {
-        /// Below this current a spool with its coil off is closed: half of the smallest threshold.
-        const CLOSED_MICROAMPERE: i32 = 300_000;
-        if coil == MilliAmp::ZERO && self.microampere < CLOSED_MICROAMPERE {
-            return MilliAmp::ZERO;
-        }
-        self.play = self.play.limited(coil, coil + hysteresis);
-        let goal = self.play.0.saturating_mul(1000);
-        let error = goal.saturating_sub(self.microampere);
-        self.microampere = self.microampere.saturating_add(lag.divide(error));
-        MilliAmp(Divisor::THOUSAND.divide(self.microampere))
-    }
 }
