@@ -15,6 +15,7 @@ mod onset;
 mod recovery;
 mod release;
 mod rows;
+mod sensor_lag;
 mod signals;
 mod standstill;
 mod travel_deficit;
