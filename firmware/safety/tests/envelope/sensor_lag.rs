@@ -108,6 +108,40 @@ fn rows_8_and_10_before_motion_require_travel_as_late_as_the_sensor_shows_it() {
     }
 }
 
+/// The ground holds it, or the pump at its relief pressure.
+fn held(inputs: &mut Inputs) {
+    inputs.cylinder_pressure = Some(MilliBar(0));
+    inputs.pump_pressure = Some(NOMINAL.hydraulics.relief_pressure);
+}
+
+/// What the valves gave before is neither required nor yet to be shown.
+#[test]
+fn a_hitch_that_was_held_before_motion_is_judged_as_if_its_coil_came_on_then() {
+    const STEPS: i32 = 50;
+    const LAG_MS: i32 = 189;
+    for order in [Order::Lift(1_500), Order::Lower(1_400)] {
+        let udeg = speed(order) * degrees(MEAN) / 1_000;
+        let safety = SafetyParameters {
+            onset_budget: MilliDegree(100_000),
+            onset_debt: MilliDegree(STEPS * udeg / 1_000),
+            ..SAFETY
+        };
+        let sensors = lagging(LAG_MS);
+        let limits = within(&safety, &sensors);
+        let mut rig = Rig::armed();
+        (0..100).for_each(|_| _ = rig.step_within(limits, order, hangs));
+        rig.step_within(limits, order, held);
+        let on = on_for(&mut rig, limits, order, hangs).unwrap();
+        assert_eq!(rig.envelope.tripped(), Some(Trip::NotFollowing));
+        // Its coil is on at once, a step earlier than one that has yet to come on.
+        let expected = shown_after(LAG_MS, f64::from(STEPS)) - 1;
+        assert!(
+            (on - expected).abs() <= 1,
+            "{order:?}: on for {on} steps, not {expected}"
+        );
+    }
+}
+
 /// A hitch that has crept, stands, and then gets a current of which all that the valve curve gives is required.
 fn started(limits: Limits<'_>, order: Order) -> Rig {
     let (slow, way) = match order {
