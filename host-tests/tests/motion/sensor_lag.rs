@@ -8,6 +8,9 @@ use hitch_quantities::units::{MilliDegree, Millisecond};
 use hitch_quantities::{Calibration, Fault, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::ClosedLoop;
+use host_tests::drawn_hitches::draw::draw;
+use host_tests::drawn_hitches::figures::{FIGURES, beyond, spread, table};
+use host_tests::drawn_hitches::session::{MoveFigures, drive as drive_drawn};
 
 const LOAD_KG: f64 = 150.0;
 const OIL_C: f64 = 40.0;
@@ -236,4 +239,39 @@ fn the_lag_of_an_identified_model_goes_to_the_calibration() {
     assert_eq!(of(0.189).unwrap(), Millisecond(189));
     let refused = of(0.6).unwrap_err().to_string();
     assert!(refused.contains("angle_lag"), "{refused}");
+}
+
+/// Untaught machines of the second rig, whose sensors lag by 20 to 350 ms as their calibrations have it.
+///
+/// A load that oscillates on a compensator with lag overshoots: the spool lag, by which such a lag is found with a fast
+/// sensor, is not identified. So the overshoot is only judged of the other machines.
+#[test]
+fn drawn_hitches_with_lag_arrive_without_a_fault() {
+    const MACHINES: u64 = 12;
+    const MOVES: usize = 4;
+    let mut lags = fastrand::Rng::with_seed(SEED);
+    let (mut quick, mut oscillating) = (Vec::new(), Vec::new());
+    for seed in 1..=MACHINES {
+        let lag_ms = lags.i32(20..=350);
+        let mut machine = draw(seed, MOVES);
+        machine.physics.sensors.angle_lag_s = 1e-3 * f64::from(lag_ms);
+        let moves = drive_drawn(&machine, &calibration(lag_ms));
+        match machine.physics.compensator_lag_s > 0.0 {
+            true => oscillating.extend(moves),
+            false => quick.extend(moves),
+        }
+    }
+    let [_, overshoot, error, _, _, fault] = &FIGURES;
+    for (title, moves) in [
+        ("drawn hitches with lag", &quick),
+        ("... and a compensator with lag", &oscillating),
+    ] {
+        let all: Vec<&MoveFigures> = moves.iter().collect();
+        println!("{}", table(title, &all));
+        assert_eq!(beyond(&all, fault), 0.0);
+        assert!(spread(&all, error.of)[2] <= ARRIVED_DEG);
+    }
+    let all: Vec<&MoveFigures> = quick.iter().collect();
+    let [_, high_deg, _] = spread(&all, overshoot.of);
+    assert!(high_deg <= ARRIVED_DEG, "95 % quantile {high_deg} deg");
 }

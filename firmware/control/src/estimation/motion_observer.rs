@@ -9,9 +9,9 @@
 //! ```
 //!
 //! `b` is the speed error of the valve map (a shifted threshold, an unknown load). It is adapted only while a move is
-//! demanded. The observer of a sensor that lags is [`super::delayed_output`]. The model of a sinking load is [`super::free_fall`]. The spool lags are identified from the position error
-//! ([`super::spool_lag`]) and kept for later moves. The position is in nanometres: a speed in um/s is then the distance
-//! of one millisecond.
+//! demanded. The observer of a sensor that lags is [`super::delayed_output`], the model of a sinking load
+//! [`super::free_fall`]. The spool lags are identified from the position error ([`super::spool_lag`]) and kept for later
+//! moves. The position is in nanometres: a speed in um/s is then the distance of one millisecond.
 
 use hitch_quantities::calibration::design_parameters::{HydraulicParameters, MotionParameters};
 use hitch_quantities::fixed::Divisor;
