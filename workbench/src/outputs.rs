@@ -11,7 +11,9 @@ use crate::error::Error;
 use crate::output::{JsonArg, check_writable, is_stdout, print};
 
 /// Extensions of files that a campaign is read from, beside its manifest.
-const CAMPAIGN_FILES: [&str; 6] = ["csv", "log", "asc", "dbc", "mf4", "mdf"];
+const CAMPAIGN_FILES: [&str; 12] = [
+    "csv", "tsv", "txt", "lvm", "log", "asc", "blf", "dbc", "mf4", "mdf", "mat", "parquet",
+];
 
 /// All documents of a command.
 #[derive(Debug)]

@@ -30,6 +30,15 @@ fn outputs_that_would_destroy_something_are_refused() {
         &measured,
         "c/lift.csv: is an input of this command",
     );
+    for name in ["c/day.blf", "c/bench.mat", "c/bench.parquet", "c/bench.lvm"] {
+        write(&dir, name, "a log that the manifest does not name yet");
+        let report = ["compare", "c", "--report", name];
+        refused(
+            dir.path(),
+            &report,
+            &format!("{name}: is an input of this command"),
+        );
+    }
     write(&dir, "m.toml", "format = 1\nbase = \"nominal\"\n");
     let model = ["calibrate", "m.toml", "--out", "m.toml"];
     refused(dir.path(), &model, "m.toml: is an input of this command");
