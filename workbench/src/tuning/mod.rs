@@ -129,7 +129,7 @@ impl Trial {
         })
     }
 
-    /// Searches from `base` with about `trials` candidates. Values named in `fixed` (as in `position.creep_speed`) are
+    /// Searches from `base` with at most `trials` candidates. Values named in `fixed` (as in `position.creep_speed`) are
     /// not changed. `tell` is called after each candidate with their number so far and the best cost.
     #[must_use]
     pub fn search(
@@ -141,7 +141,12 @@ impl Trial {
     ) -> Option<Judged> {
         let knobs = without(&self.knobs, fixed);
         let state = std::sync::Mutex::new((0, None::<Judged>));
+        // The method always completes a generation.
+        let is_over = || state.lock().is_ok_and(|state| state.0 >= trials);
         let objective = |point: &DVector<f64>| {
+            if is_over() {
+                return f64::MAX;
+            }
             let judged = with_values(base, &knobs, self.least, point.as_slice())
                 .and_then(|calibration| self.judge(&calibration));
             let cost = judged.as_ref().map_or(f64::MAX, |judged| judged.cost);
@@ -196,4 +201,31 @@ fn added(id: &str, values: &[f64]) -> Option<AddedEffect> {
         effect: find(id)?,
         values: values.to_vec(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The method completes its generations, of a dozen candidates; no more of them than asked for are tried.
+    #[test]
+    fn a_search_tries_no_more_candidates_than_asked_for() {
+        let trial = Trial {
+            plants: Vec::new(),
+            presses: Vec::new(),
+            knobs: tuned_by(true, true),
+            least: Least {
+                knob: "hydraulics.hysteresis",
+                value: USUAL_HYSTERESIS_A,
+            },
+        };
+        for trials in [1, 10, 31] {
+            let tried = std::sync::Mutex::new(Vec::new());
+            let tell = |count, _| tried.lock().expect("not poisoned").push(count);
+            let found = trial.search(&Calibration::nominal(), &[], trials, tell);
+            assert!(found.is_none(), "nothing is driven");
+            let tried = tried.into_inner().expect("not poisoned");
+            assert_eq!(tried.iter().max(), Some(&trials));
+        }
+    }
 }
