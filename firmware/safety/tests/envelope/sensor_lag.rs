@@ -75,12 +75,14 @@ fn on_for(
     (0..3_000).find(|_| rig.step_within(limits, order, &fault) == CoilCurrents::OFF)
 }
 
+/// What a sensor shows of a hitch that does not move.
+type Fault = fn(&mut Inputs);
+
 // REQ-SAFE-04
 #[test]
 fn rows_8_and_10_before_motion_require_travel_as_late_as_the_sensor_shows_it() {
     const STEPS: i32 = 50;
-    let kinds: [(fn(&mut Inputs), Trip); 2] =
-        [(still, Trip::AngleFrozen), (hangs, Trip::NotFollowing)];
+    let kinds: [(Fault, Trip); 2] = [(still, Trip::AngleFrozen), (hangs, Trip::NotFollowing)];
     for (order, (fault, trip)) in [Order::Lift(1_500), Order::Lower(1_400)]
         .into_iter()
         .flat_map(|order| kinds.map(|kind| (order, kind)))
