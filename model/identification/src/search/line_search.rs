@@ -38,11 +38,11 @@ pub(crate) fn line_searched(problem: Problem<'_>, fit: Fit, index: usize) -> Fit
             }
         })
     };
-    let whole = whole(added).map(|whole| {
+    let whole = whole(added).zip(reaches.first()).map(|(whole, &widest)| {
         let mut estimate = fit.estimate.clone();
         estimate.effects[index] = whole;
         let whole = evaluate_weighted(problem, estimate, fit.weights.clone());
-        let nearby = nearby(problem, &whole, index, reaches[0]);
+        let nearby = nearby(problem, &whole, index, widest);
         along(refine(problem, better(whole, nearby).estimate))
     });
     let fit = along(fit);
