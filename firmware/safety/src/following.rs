@@ -31,7 +31,7 @@
 //! * The lags cover slow spools, and loads on oil with air. A falling current reduces the required speed at once: no
 //!   spool
 //!   closes faster.
-//! * The sensor lags in addition (`sensors.angle_lag`), before and after motion. What it has lately shown needs no lag.
+//! * The lag of the angle sensor (`sensors.angle_lag`) is added to these. The measured recent speed already contains it.
 //! * Share and following speed cover a load that stands still behind an open valve. A braked load on soft oil
 //!   oscillates, and
 //!   stands still for up to 0.1 s at its reversals. A load that is lifted from the ground first moves by the spring of

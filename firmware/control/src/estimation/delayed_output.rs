@@ -23,7 +23,7 @@
 //! resolution of the correction is 2 nm.
 //!
 //! The distance by which the signal trails the position is also computed from the estimated speed alone
-//! ([`DelayedOutput::distance`]). It is free of noise, and tells when the signal has settled.
+//! ([`DelayedOutput::distance`]). It has no measurement noise. The signal has settled once this distance is small.
 
 use hitch_quantities::calibration::linkage::LinkageTable;
 use hitch_quantities::fixed::{Divisor, mul_div};
