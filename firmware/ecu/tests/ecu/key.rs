@@ -112,7 +112,11 @@ fn word(of: (&str, &str)) -> usize {
     SCALARS_WORD + names.position(|name| name == of).unwrap()
 }
 
-/// The loosest end of each value of the envelope and the sensors that has one looser than the default.
+/// Longest lag of the angle sensor that goes with the fastest onset, 48 mm/s: 9.6 mm.
+const LAG_WITH_FASTEST_ONSET_MS: i32 = 200;
+
+/// The loosest end of each value of the envelope and the sensors that has one looser than the default. All of them
+/// together are a valid calibration.
 fn loosest() -> Vec<(String, usize, i32)> {
     let scalars = GROUPS.iter().flat_map(|group| {
         let parameters = group.parameters.iter();
@@ -124,6 +128,7 @@ fn loosest() -> Vec<(String, usize, i32)> {
         .filter_map(|((group, parameter), word)| {
             let end = match word_range(word).unwrap().class {
                 Class::Safety(Tightening::Up) => parameter.min,
+                Class::Safety(_) if parameter.name == "angle_lag" => LAG_WITH_FASTEST_ONSET_MS,
                 Class::Safety(Tightening::Down | Tightening::None) => parameter.max,
                 Class::Live | Class::Machine => panic!("{group}.{}", parameter.name),
             };
@@ -186,6 +191,28 @@ fn with_the_key_each_safety_value_goes_there_is_stored_and_reported() {
         assert_eq!(restarted.machine.ecu().calibration().word(word), Some(end));
     }
     assert!(has_code(&mut restarted, SAFETY_VALUES, 31), "DM1");
+}
+
+#[test]
+fn a_lag_too_long_for_the_onset_is_not_stored() {
+    let flash = Flash::blank().with_secret(&secret());
+    let mut bench = serviced(flash);
+    unlock(&mut bench);
+    for (_, word, end) in loosest() {
+        write(&mut bench, word, end).unwrap();
+    }
+    let lag = word(("sensors", "angle_lag"));
+    write(&mut bench, lag, LAG_WITH_FASTEST_ONSET_MS + 1).unwrap();
+    let from = bench.sent.len();
+    ask(&mut bench, &[0xF9, 1, 0, 0]).unwrap();
+    bench.run(3_000);
+    let said = |event: [u8; 2]| {
+        bench.sent[from..]
+            .iter()
+            .any(|(_, f)| f.data().starts_with(&event))
+    };
+    assert!(said([0xFD, 0xFE]), "not stored");
+    assert!(!said([0xFD, 0x03]), "stored");
 }
 
 #[test]
