@@ -5,6 +5,7 @@ use hitch_plant::Model;
 use hitch_quantities::units::MilliDegree;
 use hitch_quantities::{Inputs, State};
 use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
+use host_tests::seeds::cases;
 use host_tests::teaching::{dynamic_with, nominal, teach as taught, teach_with as taught_with};
 
 fn shifted(lift_a: f64, lower_a: f64) -> Model {
@@ -38,8 +39,9 @@ fn assert_as_good(run: &LoopRun, right: &LoopRun) {
 #[test]
 fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
     println!("shifts, A       load   found, A         ends, deg        moves afterwards");
-    for (lift_a, lower_a) in [(0.25, 0.25), (-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25)] {
-        for load_kg in [50.0, 150.0, 250.0] {
+    let shifts_a = [(0.25, -0.25), (-0.25, 0.25), (0.25, 0.25), (-0.25, -0.25)];
+    for &(lift_a, lower_a) in cases(&shifts_a[..2], &shifts_a) {
+        for &load_kg in cases(&[150.0][..], &[50.0, 150.0, 250.0]) {
             let model = shifted(lift_a, lower_a);
             let found = taught(&model, load_kg).unwrap();
             let [lift_found_a, lower_found_a] =
@@ -93,13 +95,13 @@ fn the_lags_of_the_spools_are_found() {
         ("entrained-air", &[0.02, 1.2]),
     ])
     .effects;
-    for true_ms in [30.0, 45.0, 55.0] {
+    for &true_ms in cases(&[30.0, 55.0][..], &[30.0, 45.0, 55.0]) {
         let mut constants = hitch_model_file::dynamic().constants().clone();
         constants.spool_time_constant_s = 1e-3 * true_ms;
         let model = Model::new("another spool", constants)
             .unwrap()
             .with_effects(effects.clone());
-        for load_kg in [50.0, 150.0, 250.0] {
+        for &load_kg in cases(&[50.0, 250.0][..], &[50.0, 150.0, 250.0]) {
             let found = taught(&model, load_kg).unwrap();
             let calibration = found.applied_to(&nominal()).validate().unwrap();
             let hydraulics = &calibration.hydraulics;

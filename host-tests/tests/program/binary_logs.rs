@@ -105,10 +105,10 @@ fn broken_binary_logs_are_refused() {
         assert_eq!(read_all(&path, [whole.clone()].into_iter()), (1, 1));
         // Odd steps reach all places of the formats' words.
         let prefixes = (0..whole.len())
-            .step_by(cases(41, 3))
+            .step_by(cases(101, 3))
             .map(|length| whole[..length].to_vec());
         let (read, cut) = read_all(&path, prefixes);
-        let flipped = (0..whole.len()).step_by(cases(13, 1)).map(|at| {
+        let flipped = (0..whole.len()).step_by(cases(37, 1)).map(|at| {
             let mut bytes = whole.clone();
             bytes[at] ^= [0x01, 0x80, 0xFF][at % 3];
             bytes

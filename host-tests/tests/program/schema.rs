@@ -75,7 +75,7 @@ fn documents_on_a_campaign_follow_their_schemas() {
 fn documents_of_the_closed_loop_follow_their_schemas() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
-    assert_valid(folder, "loop", "--scenario quick");
+    assert_valid(folder, "loop", "--scenario quick --load 150");
     let variant = "--variant soft:position.approach_gain=30";
     assert_valid(
         folder,
@@ -92,7 +92,7 @@ fn documents_of_the_closed_loop_follow_their_schemas() {
     assert_valid(
         folder,
         "tune",
-        "--scenario quick --trials 10 --out tuned.toml --force",
+        "--scenario quick --loads 150 --trials 10 --out tuned.toml --force",
     );
     assert_valid(
         folder,

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use host_tests::html_report::{assert_self_contained, plots, without_library};
 use host_tests::program::run;
+use host_tests::seeds::cases;
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -73,8 +74,10 @@ fn assert_shows_both(html: &str) {
 #[test]
 fn tuning_the_button_reduces_the_overshoot_of_its_speed() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments =
-        "tune --scenario rate --loads 50,250 --trials 40 --out tuned.toml --report r.html --json -";
+    let arguments = cases(
+        "tune --scenario rate --loads 50,250 --trials 20 --out tuned.toml --report r.html --json -",
+        "tune --scenario rate --loads 50,250 --trials 40 --out tuned.toml --report r.html --json -",
+    );
     let output = run(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
     assert!(output.status.success(), "{}", text(&output.stderr));
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -127,7 +130,7 @@ fn a_value_set_by_hand_is_driven_and_a_wrong_one_is_refused_in_one_line() {
 fn a_value_set_by_hand_is_left_alone_by_the_search() {
     let folder = tempfile::tempdir().unwrap();
     let arguments =
-        "tune --scenario quick --trials 20 --out tuned.toml --force --set position.creep_speed=9";
+        "tune --scenario quick --trials 10 --out tuned.toml --force --set position.creep_speed=9";
     let output = run(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
     assert!(output.status.success(), "{}", text(&output.stderr));
     let tuned = std::fs::read_to_string(folder.path().join("tuned.toml")).unwrap();
