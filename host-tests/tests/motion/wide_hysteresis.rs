@@ -12,6 +12,8 @@ use host_tests::drawn_hitches::teaching::taught;
 use host_tests::second_rig::driven_hitch::Conditions;
 use host_tests::seeds::cases;
 
+/// By day, and with `HITCH_THOROUGH`.
+const FEW_MACHINES: usize = 12;
 const MACHINES: usize = 40;
 const MOVES: usize = 6;
 /// Narrowest hysteresis that is wide, A.
@@ -33,7 +35,7 @@ fn taught_machines() -> Vec<(Drawn, ValidCalibration)> {
     let nominal = Calibration::nominal().validate().unwrap();
     let wide = |drawn: &Drawn| !drawn.structured && width_a(drawn) >= WIDE_A;
     let machines = (1..).map(|seed| draw(seed, MOVES)).filter(wide);
-    let taught = machines.take(MACHINES).map(|drawn| {
+    let taught = machines.take(cases(FEW_MACHINES, MACHINES)).map(|drawn| {
         let calibration = taught(&drawn, &nominal)
             .unwrap_or_else(|error| panic!("machine {}: {error:?}", drawn.seed));
         (drawn, calibration)
