@@ -22,6 +22,7 @@ pub mod refusal;
 pub mod replay;
 pub mod second_rig;
 pub mod seeds;
+pub mod short_moves;
 pub mod simulated_lab;
 pub mod teaching;
 

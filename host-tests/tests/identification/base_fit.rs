@@ -20,6 +20,7 @@ use host_tests::second_rig::hideable::{Fidelity, find};
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
 use host_tests::seeds::{cases, seeds};
+use host_tests::short_moves::few_runs;
 
 /// Largest error of a fitted model, sigma: noise.
 const NOISE: f64 = 1.1;
@@ -75,7 +76,7 @@ fn fitted(seed: u64, family: Family, plan: Plan, off: Off) -> (Model, BaseFit) {
     fitted_with(seed, family, plan, off, None)
 }
 
-/// With an effect of a size hidden in the campaign.
+/// With an effect of a size hidden in the campaign. A dynamic model is fitted to the short moves by day.
 fn fitted_with(
     seed: u64,
     family: Family,
@@ -97,7 +98,11 @@ fn fitted_with(
     );
     let truth = starting_point(family);
     let declared = declared(&truth, off);
-    let experiment = Experiment::new(&campaign(&case), &declared);
+    let measured = match family {
+        Family::Steady => campaign(&case),
+        Family::Dynamic => few_runs(campaign(&case)),
+    };
+    let experiment = Experiment::new(&measured, &declared);
     let fit = fit_base_model(&experiment, &declared, &|_| {});
     (truth, fit)
 }

@@ -9,14 +9,18 @@ use hitch_identification::adequacy::signal::Signal;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
-use hitch_plant::Model;
+use hitch_plant::{Dynamics, Model};
+use host_tests::short_moves::few_runs;
 
 fn campaigns() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns")
 }
 
+/// A dynamic model explains the short moves by day.
 fn explained(name: &str, model: &Model) -> Explanation {
     let campaign = Campaign::load(&campaigns().join(name)).expect("a shipped campaign");
+    let rings = model.constants().dynamics == Dynamics::Dynamic;
+    let campaign = if rings { few_runs(campaign) } else { campaign };
     explain(
         Problem::new(&Experiment::new(&campaign, model), model),
         &|_| {},
