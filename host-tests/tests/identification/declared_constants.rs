@@ -8,11 +8,12 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
 use hitch_plant::{Constants, Model};
+use host_tests::short_moves::few_runs;
 
-/// The clean campaign of the dynamic machine explained from a model with other constants.
+/// The clean campaign of the dynamic machine explained from a model with other constants; by day its short moves.
 fn explained(declare: fn(&mut Constants)) -> Explanation {
     let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns");
-    let campaign = Campaign::load(&campaigns.join("clean-dynamic")).expect("shipped");
+    let campaign = few_runs(Campaign::load(&campaigns.join("clean-dynamic")).expect("shipped"));
     let mut constants = hitch_model_file::dynamic().constants().clone();
     declare(&mut constants);
     let model = Model::new("misdeclared", constants).expect("the linkage is the paper's");
