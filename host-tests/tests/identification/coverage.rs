@@ -11,6 +11,7 @@ use hitch_identification::explanation::explain::fit_base;
 use hitch_identification::search::single_effects::try_effects;
 use hitch_plant::{AddedEffect, Dynamics, Effect, Model};
 use host_tests::seeds::{cases, seeds};
+use host_tests::short_moves::few_runs;
 use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -76,6 +77,10 @@ fn distances(effect: &'static dyn Effect, seed: u64) -> Distances {
     let nominal = starting_point(effect);
     let rig = nominal.with_effects(vec![truth.clone()]);
     let campaign = campaign(&rig, &mut random);
+    let campaign = match effect.needs() {
+        Some(Dynamics::Dynamic) => few_runs(campaign),
+        _ => campaign,
+    };
     let experiment = Experiment::new(&campaign, &nominal);
     let base = fit_base(Problem::new(&experiment, &nominal));
     let candidates = try_effects(

@@ -17,6 +17,7 @@ use host_tests::second_rig::hideable::{Fidelity, find};
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
 use host_tests::seeds::cases;
+use host_tests::short_moves::{few_runs, short_moves};
 
 /// Seed, hidden effects, faithful or structured form, good or rough instruments.
 type Question = (u64, &'static str, Fidelity, bool);
@@ -56,17 +57,19 @@ fn ask(family: Family, plan: Plan, questions: &[Question]) -> Vec<Graded> {
 // REQ-DIAG-01
 #[test]
 fn effects_of_a_steady_rig_are_named_in_the_lab() {
+    let questions = [
+        (1, "flow-force", Fidelity::Faithful, false),
+        (5, "pin-friction", Fidelity::Structured, true),
+        (4, "return-line-loss", Fidelity::Structured, false),
+        (6, "lower-threshold-shift", Fidelity::Faithful, true),
+    ];
     let graded = ask(
         Family::Steady,
         Plan::Lab,
-        &[
-            (1, "flow-force", Fidelity::Faithful, false),
-            (4, "return-line-loss", Fidelity::Structured, false),
-            (5, "pin-friction", Fidelity::Structured, true),
-            (6, "lower-threshold-shift", Fidelity::Faithful, true),
-        ],
+        cases(&questions[..2], &questions),
     );
-    assert!(graded.iter().filter(|graded| graded.named_first()).count() >= 3);
+    let named_first = graded.iter().filter(|graded| graded.named_first()).count();
+    assert!(4 * named_first >= 3 * graded.len());
     assert!(!graded.iter().any(Graded::wrong));
 }
 
@@ -109,38 +112,37 @@ fn an_effect_is_named_in_the_field() {
     assert!(graded[0].named_first());
 }
 
-/// The short moves of a lab campaign of the dynamic rig: ringing pressures take long to simulate.
-fn short_moves(question: Question) -> (Case, Campaign) {
-    let case = draw(question.0, &wish(Family::Dynamic, Plan::Lab, question));
-    let mut measured = campaign(&case);
-    measured.runs.retain(|run| {
-        ["lift", "lower"]
-            .iter()
-            .any(|kind| run.file.starts_with(kind))
-    });
-    (case, measured)
+/// A lab campaign of the dynamic rig.
+fn ringing(question: Question) -> Case {
+    draw(question.0, &wish(Family::Dynamic, Plan::Lab, question))
 }
 
 // REQ-DIAG-01
 #[test]
 fn an_effect_is_named_where_pressures_ring() {
     let question = (11, "entrained-air", Fidelity::Faithful, false);
-    let (case, measured) = short_moves(question);
-    let answer = Explaining.answer(&measured, &starting_point(case.family));
+    let case = ringing(question);
+    let answer = Explaining.answer(&short_moves(campaign(&case)), &starting_point(case.family));
     println!("{question:?}: {answer:?}");
     assert_eq!(answer.named, ["entrained-air"]);
 }
 
 /// The explanation of a case from the starting point of its family.
 fn explained(case: &Case) -> Explanation {
+    explained_by(case, &campaign(case))
+}
+
+/// The explanation of what was measured of a case.
+fn explained_by(case: &Case, measured: &Campaign) -> Explanation {
     let model = starting_point(case.family);
     explain(
-        Problem::new(&Experiment::new(&campaign(case), &model), &model),
+        Problem::new(&Experiment::new(measured, &model), &model),
         &|_| {},
     )
 }
 
-/// The effect that is named first, and the ratio of its size to the hidden one.
+/// The effect that is named first, and the ratio of its size to the hidden one. The short moves alone do not tell creeping
+/// hoses from elastic ones, nor stiction from hysteresis.
 fn first_over_truth(case: &Case) -> (&'static dyn Effect, f64) {
     let found = explained(case);
     let first = found.steps.first().expect("something is found");
@@ -152,8 +154,7 @@ fn first_over_truth(case: &Case) -> (&'static dyn Effect, f64) {
 
 /// Ratio of the identified to the true stiction band; fails if stiction is not named first.
 fn band_over_truth(question: Question) -> f64 {
-    let case = draw(question.0, &wish(Family::Dynamic, Plan::Lab, question));
-    let (named, share) = first_over_truth(&case);
+    let (named, share) = first_over_truth(&ringing(question));
     assert_eq!(named.id(), "spool-stiction");
     share
 }
@@ -179,9 +180,11 @@ fn stiction_is_found_with_ringing_pressures() {
 /// suppress this, but the machine has none.
 #[test]
 fn current_noise_is_not_reported_as_stiction() {
-    let question = (23, "nothing", Fidelity::Faithful, true);
-    let graded = ask(Family::Dynamic, Plan::Lab, &[question]);
-    assert!(graded[0].answer.named.is_empty() && !graded[0].answer.unknown);
+    let case = ringing((23, "nothing", Fidelity::Faithful, true));
+    let measured = few_runs(campaign(&case));
+    let answer = Explaining.answer(&measured, &starting_point(case.family));
+    println!("{answer:?}");
+    assert!(answer.named.is_empty() && !answer.unknown);
 }
 
 /// The leak through a gap is 2.7 times as large at 62 degC as at 40 degC.
@@ -319,9 +322,10 @@ fn two_effects_are_named_though_each_alone_looks_wrong() {
     for &seed in cases(&[2011][..], &[2011, 2016]) {
         let case = pair(Family::Dynamic, Plan::Lab, seed);
         let hidden = ids(case.hidden.iter().map(|hidden| hidden.what.id));
-        let graded = Posed::new(case).ask(&Explaining);
-        println!("{seed}: {hidden:?}, named {:?}", graded.answer.named);
-        assert_eq!(ids(graded.answer.named), hidden);
+        let measured = few_runs(campaign(&case));
+        let answer = Explaining.answer(&measured, &starting_point(case.family));
+        println!("{seed}: {hidden:?}, named {:?}", answer.named);
+        assert_eq!(ids(answer.named), hidden);
     }
 }
 
@@ -331,8 +335,8 @@ fn two_effects_are_named_though_each_alone_looks_wrong() {
 fn stiction_is_found_together_with_another_effect() {
     for &seed in cases(&[6058][..], &[6058, 6117]) {
         let case = pair(Family::Steady, Plan::Lab, seed);
-        let graded = Posed::new(case).ask(&Explaining);
-        let named = ids(graded.answer.named);
+        let answer = Explaining.answer(&campaign(&case), &starting_point(case.family));
+        let named = ids(answer.named);
         println!("{seed}: named {named:?}");
         assert!(named.iter().any(|id| id == "spool-stiction"), "{seed}");
         assert!(named.iter().all(|id| id != "solenoid-hysteresis"), "{seed}");
@@ -367,12 +371,8 @@ fn the_form_of_the_first_effect_is_chosen_anew_with_the_second() {
 fn the_ground_is_found_where_loads_ring_on_it() {
     for seed in cases(13..14, 13..16) {
         let question = (seed, "ground-contact", Fidelity::Faithful, false);
-        let (case, measured) = short_moves(question);
-        let model = starting_point(case.family);
-        let found = explain(
-            Problem::new(&Experiment::new(&measured, &model), &model),
-            &|_| {},
-        );
+        let case = ringing(question);
+        let found = explained_by(&case, &short_moves(campaign(&case)));
         let first = found.steps.first().expect("something is found");
         let (height_m, truth_m) = (first.values[0], case.hidden[0].size);
         println!(
