@@ -105,6 +105,22 @@ impl Weights {
 
     /// Number of compared samples.
     #[must_use]
+    /// The wider standard deviation of either at each sample; a sample that one of them leaves out is left out.
+    #[must_use]
+    pub fn wider(&self, other: &Self) -> Self {
+        let pairs = self.runs.iter().zip(&other.runs);
+        Self::counted(pairs.map(|(own, its)| own.wider(its)).collect())
+    }
+
+    /// Residuals that were whitened with these weights, whitened with `others` instead, which leave out the same samples or
+    /// more.
+    #[must_use]
+    pub fn whitened_with(&self, others: &Self, residuals: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let runs = self.runs.iter().zip(&others.runs).zip(residuals);
+        runs.map(|((own, its), residual)| own.whitened_with(its, residual))
+            .collect()
+    }
+
     pub fn count(&self) -> usize {
         self.counts.iter().sum()
     }
@@ -224,6 +240,48 @@ impl RunWeights {
     /// Whitened residuals of the run, channel after channel; zero for samples that are left out.
     #[must_use]
     pub fn whiten(&self, run: &ReadyRun, trace: &Trace) -> Vec<f64> {
+    /// The wider standard deviation of either at each sample, and the filter that has it.
+    fn wider(&self, other: &Self) -> Self {
+        let mut wider = self.clone();
+        let samples = self.gain.len();
+        let angle = Channel::RockerAngle.index() * samples;
+        for (place, scale) in wider.scale.iter_mut().enumerate() {
+            let its = other.scale[place];
+            if its < *scale {
+                *scale = its;
+                if let Some(sample) = place.checked_sub(angle).filter(|sample| *sample < samples) {
+                    wider.gain[sample] = other.gain[sample];
+                }
+            }
+        }
+        wider
+    }
+
+    /// Residuals that were whitened with these weights, whitened with `others` instead, which leave out the same samples or
+    /// more.
+    fn whitened_with(&self, others: &Self, residual: &[f64]) -> Vec<f64> {
+        let samples = self.gain.len();
+        let mut moved = vec![0.0; residual.len()];
+        for channel in Channel::ALL {
+            let offset = channel.index() * samples;
+            let is_angle = channel == Channel::RockerAngle;
+            let (mut walk, mut its_walk) = (0.0, 0.0);
+            for sample in 0..samples {
+                let (own, its) = (self.scale[offset + sample], others.scale[offset + sample]);
+                if own > 0.0 {
+                    let innovation = residual[offset + sample] / own;
+                    let difference = innovation + walk;
+                    moved[offset + sample] = (difference - its_walk) * its;
+                    if is_angle {
+                        walk += self.gain[sample] * innovation;
+                        its_walk += others.gain[sample] * (difference - its_walk);
+                    }
+                }
+            }
+        }
+        moved
+    }
+
         let mut residual = vec![0.0; 4 * run.len()];
         for channel in Channel::ALL {
             let Some(measured) = &run.measured[channel.index()] else {

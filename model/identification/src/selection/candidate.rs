@@ -206,10 +206,10 @@ fn weigh_with(
             )
         })
         .collect();
-    let cost_reduction = base.cost - fit.cost_under_weights_of(problem, base);
+    let [without, with] = base.compared(&fit);
     Candidate {
         effect,
-        likelihood_ratio: cost_reduction / (variance * inflation),
+        likelihood_ratio: (without - with) / (variance * inflation),
         inflation,
         detectability,
         explained_share,

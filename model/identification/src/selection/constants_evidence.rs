@@ -118,11 +118,10 @@ impl<'a> Comparison<'a> {
             false => &inaccurate,
         };
         let penalty = Penalty::given(self.problem.experiment, better);
-        let penalized = |fit: &Fit| {
-            fit.cost_under_weights_of(self.problem, better) + penalty.of_all(&fit.estimate)
-        };
-        let with_constants = penalized(self.free) + self.freed.price(penalty);
-        let log_odds = 0.5 * (penalized(&inaccurate) - with_constants) / penalty.unit;
+        let [declared, free] = inaccurate.compared(self.free);
+        let declared = declared + penalty.of_all(&inaccurate.estimate);
+        let free = free + penalty.of_all(&self.free.estimate) + self.freed.price(penalty);
+        let log_odds = 0.5 * (declared - free) / penalty.unit;
         plausibility(self.freed.explained_share) / (1.0 + (-log_odds).exp())
     }
 }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
-use crate::estimation::fit::{Fit, evaluate_weighted};
+use crate::estimation::fit::Fit;
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::evidence::shares;
 
@@ -117,16 +117,14 @@ impl Refitted {
 
     /// Sets that are better than the present one, by penalised cost.
     pub fn better(&self, problem: Problem<'_>, present: &Fit) -> Vec<&Fit> {
-        let Problem { experiment, .. } = problem;
-        let penalty = self.penalty(experiment);
-        let here = penalized(problem, present, present, penalty);
+        let penalty = self.penalty(problem.experiment);
         let own = key(present);
         let others = self.fits.iter().filter(|(key, _)| **key != own);
         let mut better: Vec<(f64, &Fit)> = others
-            .map(|(_, fit)| (penalized(problem, fit, present, penalty), fit))
-            .filter(|(cost, _)| *cost < here - BETTER)
+            .map(|(_, fit)| (gain(present, fit, penalty), fit))
+            .filter(|(gain, _)| *gain > BETTER)
             .collect();
-        better.sort_by(|a, b| a.0.total_cmp(&b.0));
+        better.sort_by(|a, b| b.0.total_cmp(&a.0));
         better.into_iter().map(|(_, fit)| fit).collect()
     }
 
@@ -151,18 +149,14 @@ impl Refitted {
     pub fn weighed(&self, problem: Problem<'_>, best: &Fit) -> Vec<Weighed<'_>> {
         let Problem { experiment, .. } = problem;
         let penalty = Penalty::given(experiment, best);
-        let here = penalized(problem, best, best, penalty);
         let mut weighed: Vec<Weighed> = self
             .fits
             .iter()
-            .map(|(key, fit)| {
-                let cost = penalized(problem, fit, best, penalty);
-                Weighed {
-                    key,
-                    fit,
-                    relative_likelihood_ratio: (here - cost) / penalty.unit,
-                    probability: 0.0,
-                }
+            .map(|(key, fit)| Weighed {
+                key,
+                fit,
+                relative_likelihood_ratio: gain(best, fit, penalty) / penalty.unit,
+                probability: 0.0,
             })
             .collect();
         // The iteration order of a hash map is random.
@@ -180,10 +174,14 @@ impl Refitted {
 
 /// Probability that an effect is present.
 pub(crate) fn probability_of(weighed: &[Weighed<'_>], id: &str) -> f64 {
-    let with_it = weighed
-        .iter()
-        .filter(|set| set.key.ids().any(|own| own == id));
-    with_it.map(|set| set.probability).sum()
+    probability_of_any(weighed, &[id])
+}
+
+/// Probability that any of some effects is present.
+pub(crate) fn probability_of_any(weighed: &[Weighed<'_>], ids: &[&str]) -> f64 {
+    let has_any = |set: &&Weighed<'_>| set.key.ids().any(|own| ids.contains(&own));
+    let with_any = weighed.iter().filter(has_any);
+    with_any.map(|set| set.probability).sum()
 }
 
 /// A set with its posterior weight.
@@ -195,10 +193,8 @@ pub(crate) struct Weighed<'a> {
     pub probability: f64,
 }
 
-/// Penalised cost of a fit, under the weights of another fit or its own, whichever is less: a sticking spool does not
-/// follow the noise of the currents, and under its own weights its residuals are larger.
-fn penalized(problem: Problem<'_>, fit: &Fit, beside: &Fit, penalty: Penalty) -> f64 {
-    let (estimate, weights) = (fit.estimate.clone(), beside.weights.clone());
-    let under_its = evaluate_weighted(problem, estimate, weights).cost;
-    under_its.min(fit.cost) + penalty.of_all(&fit.estimate)
+/// By how much the penalised cost of a fit is below that of another one, under common weights.
+fn gain(from: &Fit, to: &Fit, penalty: Penalty) -> f64 {
+    let [before, after] = from.compared(to);
+    before + penalty.of_all(&from.estimate) - after - penalty.of_all(&to.estimate)
 }
