@@ -119,7 +119,10 @@ impl ShownConstant {
             self.name.clone(),
             digits(self.declared),
             digits(self.fitted),
-            format!("{} to {}", digits(self.low), digits(self.high)),
+            match self.low.is_nan() {
+                true => "withheld".to_owned(),
+                false => format!("{} to {}", digits(self.low), digits(self.high)),
+            },
             self.unit.to_owned(),
         ]
     }

@@ -2,9 +2,9 @@
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
-    add, calibrate, changes, compare, completions, controller, diagnose, ecu, effects, explain,
-    export_fmu, flash_calibration, import, loop_, main_job, man, model, paper, record, schema,
-    serve, simulate, tune,
+    add, adopt, calibrate, changes, compare, completions, controller, diagnose, ecu, effects,
+    explain, export_fmu, flash_calibration, import, loop_, main_job, man, model, paper, record,
+    schema, serve, simulate, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -33,6 +33,8 @@ pub enum Command {
     Add(add::Args),
     /// Find and add missing effects until no further one is significant
     Explain(explain::Args),
+    /// Adopt a machine: fit constants and effects of a data sheet's model to a campaign of it
+    Adopt(adopt::Args),
     /// Compare two campaigns of a machine, or of two machines of a series
     Changes(changes::Args),
     /// Show campaign and model in the browser (local only): compare, rank and add effects
@@ -82,6 +84,7 @@ impl Command {
             Self::Diagnose(args) => diagnose::run(args),
             Self::Add(args) => add::run(args),
             Self::Explain(args) => explain::run(args),
+            Self::Adopt(args) => adopt::run(args),
             Self::Changes(args) => changes::run(args),
             Self::Serve(args) => serve::run(args),
             Self::Effects(args) => effects::run(args),

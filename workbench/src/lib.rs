@@ -16,6 +16,7 @@ pub mod fmu_export;
 pub mod heat_table;
 pub mod import;
 pub mod input_stream;
+pub mod interruption;
 pub mod model_arg;
 pub mod next_command;
 pub mod output;

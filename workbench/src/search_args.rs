@@ -2,7 +2,10 @@
 
 use std::time::{Duration, Instant};
 
+use hitch_identification::data::limit::Limit;
 use hitch_identification::search::subset::Options;
+
+use crate::interruption::requested;
 
 /// Arguments of a search.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -10,18 +13,21 @@ pub struct SearchArgs {
     /// Leave the effects that the model has as they are: look for new ones only
     #[arg(long)]
     frozen: bool,
-    /// End the search after this time and give the best account so far, s
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
-    budget: Option<f64>,
+    /// End after this time with the best account so far, s; Ctrl-C ends it at once
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "60")]
+    budget: f64,
 }
 
 impl SearchArgs {
     /// The options of a search that starts now.
     pub fn options(&self) -> Options<'static> {
-        let budget = self.budget.map(Duration::from_secs_f64);
+        let budget = Duration::from_secs_f64(self.budget);
         Options {
             changes: !self.frozen,
-            deadline: budget.map(|budget| Instant::now() + budget),
+            limit: Limit {
+                deadline: Some(Instant::now() + budget),
+                requested: requested(),
+            },
             ..Options::default()
         }
     }

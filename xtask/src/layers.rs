@@ -103,6 +103,7 @@ const CRATES: [Layers; 8] = [
             &["output"],
             &["outputs"],
             &[
+                "interruption",
                 "model_arg",
                 "effect_arg",
                 "search_args",

@@ -43,4 +43,8 @@ pub trait Method: Sync {
     fn abilities(&self) -> Abilities;
     /// Its answer on a campaign, with the initial model.
     fn answer(&self, campaign: &Campaign, model: &Model) -> Answer;
+    /// Its answer on a campaign of a machine whose model was adopted from a baseline.
+    fn answer_since(&self, _baseline: &Campaign, campaign: &Campaign, model: &Model) -> Answer {
+        self.answer(campaign, model)
+    }
 }

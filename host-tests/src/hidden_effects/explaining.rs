@@ -4,7 +4,9 @@ use hitch_campaign::Campaign;
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
-use hitch_identification::explanation::explain::{Verdict, explain};
+use hitch_identification::estimation::baseline::Baseline;
+use hitch_identification::explanation::explain::{Verdict, explain_with};
+use hitch_identification::search::subset::{Accuracy, Options};
 use hitch_plant::{Effect, Model};
 
 use super::answer::{Abilities, Answer, Method};
@@ -28,35 +30,50 @@ impl Method for Explaining {
 
     fn answer(&self, campaign: &Campaign, model: &Model) -> Answer {
         let experiment = Experiment::new(campaign, model);
-        let explanation = explain(Problem::new(&experiment, model), &|_| {});
-        let steps = &explanation.steps;
-        let id = |effect: &dyn Effect| effect.id().to_owned();
-        Answer {
-            named: steps.iter().map(|step| id(step.effect)).collect(),
-            group: steps
-                .iter()
-                .flat_map(|step| step.indistinguishable.iter().map(|other| id(other.effect)))
-                .collect(),
-            unknown: explanation.verdict == Verdict::Unexplained,
-            intervals: steps
-                .iter()
-                .filter_map(|step| {
-                    let (low, high) = *step.intervals.get(size(step.effect)?)?;
-                    Some((id(step.effect), low, high))
-                })
-                .collect(),
-            confidences: steps
-                .iter()
-                .map(|step| (id(step.effect), step.confidence))
-                .collect(),
-            // A model without effects has the same error on other runs as before.
-            held_out: Some(steps.first().zip(steps.last()).map_or_else(
-                || (explanation.before.error(), explanation.before.error()),
-                |(first, last)| (first.held_out_before.error, last.held_out_after.error),
-            )),
-            error: Some(explanation.after.error()),
-            model: Some(explanation.after.estimate.applied_to(model)),
-        }
+        answer(&experiment, model, Options::default())
+    }
+
+    fn answer_since(&self, baseline: &Campaign, campaign: &Campaign, model: &Model) -> Answer {
+        let first = Experiment::new(baseline, model);
+        let baseline = Baseline::new(Problem::new(&first, model));
+        let experiment = baseline.subtracted_from(Experiment::new(campaign, model));
+        let options = Options {
+            constants: Accuracy::Adopted,
+            ..Options::default()
+        };
+        answer(&experiment, model, options)
+    }
+}
+
+fn answer(experiment: &Experiment, model: &Model, options: Options<'_>) -> Answer {
+    let explanation = explain_with(Problem::new(experiment, model), options, &|_| {});
+    let steps = &explanation.steps;
+    let id = |effect: &dyn Effect| effect.id().to_owned();
+    Answer {
+        named: steps.iter().map(|step| id(step.effect)).collect(),
+        group: steps
+            .iter()
+            .flat_map(|step| step.indistinguishable.iter().map(|other| id(other.effect)))
+            .collect(),
+        unknown: explanation.verdict == Verdict::Unexplained,
+        intervals: steps
+            .iter()
+            .filter_map(|step| {
+                let (low, high) = *step.intervals.get(size(step.effect)?)?;
+                Some((id(step.effect), low, high))
+            })
+            .collect(),
+        confidences: steps
+            .iter()
+            .map(|step| (id(step.effect), step.confidence))
+            .collect(),
+        // A model without effects has the same error on other runs as before.
+        held_out: Some(steps.first().zip(steps.last()).map_or_else(
+            || (explanation.before.error(), explanation.before.error()),
+            |(first, last)| (first.held_out_before.error, last.held_out_after.error),
+        )),
+        error: Some(explanation.after.error()),
+        model: Some(explanation.after.estimate.applied_to(model)),
     }
 }
 

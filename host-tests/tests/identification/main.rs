@@ -1,6 +1,7 @@
 //! Tests of the plant, the effects and the identification.
 
 mod base_fit;
+mod baseline;
 mod changes;
 mod coarse_simulation;
 mod convergence;

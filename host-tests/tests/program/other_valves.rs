@@ -7,6 +7,8 @@ use std::process::Stdio;
 use std::time::Instant;
 
 use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::limit::Limit;
 use hitch_identification::search::subset::Options;
 use hitch_plant::Dynamics;
 use hitch_workbench::closed_loop::{Scenario, first_missed};
@@ -100,10 +102,18 @@ fn the_rebuilt_map_drives_the_machine_of_the_model() {
     let model = model.quasi_static();
     // Without effects: only the machine counts here.
     let options = Options {
-        deadline: Some(Instant::now()),
+        limit: Limit {
+            deadline: Some(Instant::now()),
+            requested: None,
+        },
         ..Options::default()
     };
-    let found = Found::new(&campaign, model.clone(), options, &|_| {});
+    let found = Found::new(
+        Experiment::new(&campaign, &model),
+        model.clone(),
+        options,
+        &|_| {},
+    );
     let rebuild = Rebuild::new(&found, Scenario::Quick).unwrap();
     let (rig, own) = (rebuild.rig.constants(), model.constants());
     assert_eq!(rig.dynamics, Dynamics::Dynamic);

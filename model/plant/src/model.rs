@@ -147,8 +147,14 @@ impl Model {
     /// The same model with stiff oil and no inertia; the lag of its spools is unchanged.
     #[must_use]
     pub fn quasi_static(&self) -> Self {
+        self.with_dynamics(Dynamics::Steady)
+    }
+
+    /// The same model with or without dynamics; all its constants are kept.
+    #[must_use]
+    pub fn with_dynamics(&self, dynamics: Dynamics) -> Self {
         let constants = Constants {
-            dynamics: Dynamics::Steady,
+            dynamics,
             ..(*self.constants).clone()
         };
         Self {

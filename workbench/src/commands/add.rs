@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use hitch_campaign::Campaign;
 use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
@@ -50,9 +49,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());
     let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
-    let model = args.model.load()?;
-    let effects = effects(&args.effects, &model)?;
-    let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
+    let effects = effects(&args.effects, &args.model.load()?)?;
+    let (model, campaign) = args.model.load_for(&args.campaign)?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
     let base = fit_freely(Problem::new(&experiment, &model));

@@ -4,6 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
+use hitch_identification::estimation::baseline::Baseline;
+use hitch_identification::search::subset::{Accuracy, Options};
+use hitch_plant::Model;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -73,29 +78,18 @@ fn many(args: &Args) -> Result<(), Error> {
     let model = args.model.load()?;
     let linkage = model.linkage().clone();
     let baseline = Campaign::load_with(&args.baseline, &linkage)?;
+    let model = args.model.nearer(model, &baseline);
     // Only a call that has work to do explains it.
     let explained = OnceLock::new();
     args.fleet.run(&args.new, &inputs, |folder| {
         let new = Campaign::load_with(folder, &linkage)?;
-        let (baseline, adopted) = explained.get_or_init(|| {
+        let adopted = explained.get_or_init(|| {
             let options = args.search.options();
-            let found = Found::with_progress(
-                &baseline,
-                model.clone(),
-                options,
-                &|_| {},
-                &Progress::hidden(),
-            );
-            let adopted = found.rebuilt(found.shown.head.campaign.clone());
-            (found.shown, adopted)
+            Adopted::new(&baseline, &model, options, &Progress::hidden())
         });
-        let options = args.search.options();
-        let progress = Progress::hidden();
-        let new = Found::with_progress(&new, adopted.clone(), options, &|_| {}, &progress);
-        Ok(Changes {
-            baseline: baseline.clone(),
-            new: new.shown,
-        })
+        Ok(adopted
+            .changes(&new, args.search.options(), &Progress::hidden())
+            .0)
     })
 }
 
@@ -108,20 +102,61 @@ fn one(args: &Args, new: &Path) -> Result<(), Error> {
     let load = |folder| Campaign::load_with(folder, model.linkage());
     let [baseline, new] = [args.baseline.as_path(), new].map(load);
     let (baseline, new) = (baseline?, new?);
-    let baseline = Found::new(&baseline, model, args.search.options(), &|_| {});
-    let adopted = baseline.rebuilt(baseline.shown.head.campaign.clone());
-    let new = Found::new(&new, adopted, args.search.options(), &|_| {});
+    let model = args.model.nearer(model, &baseline);
+    let progress = |campaign: &Campaign| Progress::start(format!("explaining {}", campaign.name));
+    let options = args.search.options();
+    let adopted = Adopted::new(&baseline, &model, options, &progress(&baseline));
+    let (changes, new) = adopted.changes(&new, args.search.options(), &progress(&new));
     if let Some(path) = &args.out {
         output::write_file(
             path,
             hitch_model_file::to_toml(&new.rebuilt(output::stem(path))).as_bytes(),
         )?;
     }
-    let changes = Changes {
-        baseline: baseline.shown,
-        new: new.shown,
-    };
     outputs.tell(&args.json, &changes, || changes.to_string())
+}
+
+/// A reference campaign, and the model that was adopted from it.
+struct Adopted {
+    found: Explanation,
+    model: Model,
+    baseline: Baseline,
+}
+
+impl Adopted {
+    /// Explains the reference campaign.
+    fn new(campaign: &Campaign, model: &Model, options: Options<'_>, progress: &Progress) -> Self {
+        let experiment = Experiment::new(campaign, model);
+        let found = Found::with_progress(experiment, model.clone(), options, &|_| {}, progress);
+        let model = found.rebuilt(campaign.name.clone());
+        let experiment = Experiment::new(campaign, &model);
+        Self {
+            baseline: Baseline::new(Problem::new(&experiment, &model)),
+            found: found.shown,
+            model,
+        }
+    }
+
+    /// What has changed since, and the explanation of the new campaign.
+    fn changes(
+        &self,
+        new: &Campaign,
+        options: Options<'_>,
+        progress: &Progress,
+    ) -> (Changes, Found) {
+        let experiment = Experiment::new(new, &self.model);
+        let experiment = self.baseline.subtracted_from(experiment);
+        let options = Options {
+            constants: Accuracy::Adopted,
+            ..options
+        };
+        let new = Found::with_progress(experiment, self.model.clone(), options, &|_| {}, progress);
+        let changes = Changes {
+            baseline: self.found.clone(),
+            new: new.shown.clone(),
+        };
+        (changes, new)
+    }
 }
 
 impl std::fmt::Display for Changes {

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::diagnosis::diagnose;
@@ -40,8 +39,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());
     let outputs = Outputs::check([args.json.target(), args.report.as_deref()], &inputs)?;
-    let model = args.model.load()?;
-    let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
+    let (model, campaign) = args.model.load_for(&args.campaign)?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
     let base = fit_base(Problem::new(&experiment, &model));

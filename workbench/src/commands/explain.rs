@@ -3,7 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
+use hitch_identification::estimation::baseline::Baseline;
+use hitch_identification::search::subset::{Accuracy, Options};
+use hitch_plant::Model;
 
 use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
@@ -27,6 +32,10 @@ pub struct Args {
     campaigns: Vec<PathBuf>,
     #[command(flatten)]
     model: ModelArg,
+    /// Folder of the campaign that the model was adopted from: what the model leaves on it is subtracted, so that only
+    /// changes since then remain
+    #[arg(long, value_name = "CAMPAIGN")]
+    baseline: Option<PathBuf>,
     /// Write the model with the added effects to this file, updated during the search with the best model so far
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
@@ -59,28 +68,61 @@ pub fn run(args: &Args) -> Result<(), Error> {
 
 fn many(args: &Args) -> Result<(), Error> {
     let model = args.model.load()?;
-    args.fleet
-        .run(&args.campaigns, &[args.model.file()], |folder| {
-            let campaign = Campaign::load_with(folder, model.linkage())?;
-            // The time limit is that of a campaign: it starts here.
-            let options = args.search.options();
-            let progress = Progress::hidden();
-            let found = Found::with_progress(&campaign, model.clone(), options, &|_| {}, &progress);
-            Ok(found.shown)
-        })
+    let baseline = baseline(args, &model)?;
+    let mut inputs = args.baseline.as_deref().map_or(Vec::new(), campaign_files);
+    inputs.push(args.model.file());
+    args.fleet.run(&args.campaigns, &inputs, |folder| {
+        let campaign = Campaign::load_with(folder, model.linkage())?;
+        let model = args.model.nearer(model.clone(), &campaign);
+        // The time limit is that of a campaign: it starts here.
+        let (experiment, options) = posed(args, &campaign, &model, baseline.as_ref());
+        let progress = Progress::hidden();
+        let found = Found::with_progress(experiment, model, options, &|_| {}, &progress);
+        Ok(found.shown)
+    })
+}
+
+/// What the model leaves on the campaign of `--baseline`.
+fn baseline(args: &Args, model: &Model) -> Result<Option<Baseline>, Error> {
+    let Some(folder) = &args.baseline else {
+        return Ok(None);
+    };
+    let campaign = Campaign::load_with(folder, model.linkage())?;
+    let experiment = Experiment::new(&campaign, model);
+    Ok(Some(Baseline::new(Problem::new(&experiment, model))))
+}
+
+/// A campaign less the baseline, and the options of its search.
+fn posed<'a>(
+    args: &Args,
+    campaign: &Campaign,
+    model: &Model,
+    baseline: Option<&Baseline>,
+) -> (Experiment, Options<'a>) {
+    let (experiment, options) = (Experiment::new(campaign, model), args.search.options());
+    match baseline {
+        None => (experiment, options),
+        Some(baseline) => {
+            let options = Options {
+                constants: Accuracy::Adopted,
+                ..options
+            };
+            (baseline.subtracted_from(experiment), options)
+        }
+    }
 }
 
 fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     let mut inputs = campaign_files(folder);
     inputs.push(args.model.file());
+    inputs.extend(args.baseline.as_deref().map_or(Vec::new(), campaign_files));
     let wanted = [
         args.out.as_deref(),
         args.report.as_deref(),
         args.json.target(),
     ];
     let outputs = Outputs::check(wanted, &inputs)?;
-    let model = args.model.load()?;
-    let campaign = Campaign::load_with(folder, model.linkage())?;
+    let (model, campaign) = args.model.load_for(folder)?;
     // The best result so far is on disk if the search is interrupted.
     let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
     let base = model.clone();
@@ -91,7 +133,9 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
             let _ = output::write_file(path, hitch_model_file::to_toml(&partial).as_bytes());
         }
     };
-    let found = Found::new(&campaign, model, args.search.options(), &improved);
+    let baseline = baseline(args, &model)?;
+    let (experiment, options) = posed(args, &campaign, &model, baseline.as_ref());
+    let found = Found::new(experiment, model, options, &improved);
     if let Some(path) = &args.out {
         output::write_file(
             path,

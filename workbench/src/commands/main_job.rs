@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
 use hitch_identification::search::subset::Options;
 use hitch_plant::Model;
 
@@ -37,7 +38,12 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let campaign = demonstration::campaign()?;
     let model = hitch_model_file::nominal();
     outputs.say(|| compared(&campaign, &model))?;
-    let found = Found::new(&campaign, model, Options::default(), &|_| {});
+    let found = Found::new(
+        Experiment::new(&campaign, &model),
+        model,
+        Options::default(),
+        &|_| {},
+    );
     outputs.say(|| explained(&found))?;
     let progress = Progress::start("running the closed loop with both valve maps");
     let rebuild = Rebuild::new(&found, Scenario::Moves)?;

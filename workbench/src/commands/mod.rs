@@ -1,5 +1,6 @@
 //! The commands, one module each: arguments and execution.
 pub mod add;
+pub mod adopt;
 pub mod calibrate;
 pub mod changes;
 pub mod compare;

@@ -16,10 +16,11 @@ use crate::paper::Paper;
 type MakeSchema = fn() -> Schema;
 
 /// Commands with the option `--json`, and the schema of their document.
-const DOCUMENTS: [(&str, MakeSchema); 9] = [
+const DOCUMENTS: [(&str, MakeSchema); 10] = [
     ("compare", schema::<Comparison>),
     ("diagnose", schema::<Diagnosis>),
     ("explain", schema::<Explanation>),
+    ("adopt", schema::<Explanation>),
     ("changes", schema::<changes::Changes>),
     ("model fit", schema::<ShownBaseFit>),
     ("loop", schema::<loop_::Driven<'static>>),

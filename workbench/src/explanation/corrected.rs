@@ -3,6 +3,7 @@
 use std::fmt;
 
 use hitch_identification::explanation::constants::CorrectedConstants;
+use hitch_identification::explanation::explain::Verdict;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -18,17 +19,34 @@ pub struct Corrected {
     pub constants: Vec<ShownConstant>,
     /// The flow curves, point by point.
     pub curves: Vec<ShownPoint>,
+    /// Why there are no intervals; `null` if there are.
+    pub withheld: Option<String>,
 }
 
 impl Corrected {
-    /// The display form.
+    /// The display form. If the model leaves a lack of fit with all its effects, the constants take up errors of its
+    /// structure, and their intervals are withheld.
     #[must_use]
-    pub fn new(found: &CorrectedConstants) -> Self {
-        Self {
+    pub fn new(found: &CorrectedConstants, verdict: Verdict, error: f64) -> Self {
+        let mut corrected = Self {
             error_after: found.fit.error(),
             constants: found.constants.iter().map(ShownConstant::new).collect(),
             curves: found.curves.iter().map(ShownPoint::new).collect(),
+            withheld: None,
+        };
+        if verdict == Verdict::Unexplained {
+            corrected.withheld = Some(format!(
+                "The intervals are withheld: the model leaves {error:.2} sigma, so that its constants take up errors of \
+                 its structure."
+            ));
+            for constant in &mut corrected.constants {
+                (constant.low, constant.high) = (f64::NAN, f64::NAN);
+            }
+            for point in &mut corrected.curves {
+                (point.low_lpm, point.high_lpm) = (f64::NAN, f64::NAN);
+            }
         }
+        corrected
     }
 
     /// The first sentence, with the error before.
@@ -73,6 +91,9 @@ impl fmt::Display for Corrected {
         }
         if self.moved().next().is_some() {
             writeln!(f, "{table}")?;
+        }
+        if let Some(reason) = &self.withheld {
+            writeln!(f, "{}", wrapped(reason))?;
         }
         for (valve, low, high) in self.flow_changes() {
             let line = format!(

@@ -1,6 +1,5 @@
 //! An explanation with its model and campaign.
 
-use hitch_campaign::Campaign;
 use hitch_identification::adequacy::localization::ErrorProfile;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
@@ -35,24 +34,23 @@ pub struct Found {
 impl Found {
     /// Explains a campaign. Reports progress on a terminal, and passes each better result to `improved`.
     pub fn new(
-        campaign: &Campaign,
+        experiment: Experiment,
         model: Model,
         options: Options<'_>,
         improved: &(dyn Fn(&Estimate) + Sync),
     ) -> Self {
-        let progress = Progress::start(format!("reading {}", campaign.name));
-        Self::with_progress(campaign, model, options, improved, &progress)
+        let progress = Progress::start(format!("explaining {}", experiment.name));
+        Self::with_progress(experiment, model, options, improved, &progress)
     }
 
     /// Explains a campaign, and reports progress to `progress`.
     pub fn with_progress(
-        campaign: &Campaign,
+        experiment: Experiment,
         model: Model,
         options: Options<'_>,
         improved: &(dyn Fn(&Estimate) + Sync),
         progress: &Progress,
     ) -> Self {
-        let experiment = Experiment::new(campaign, &model);
         let better = |fit: &Fit| {
             progress.result(account(&model, fit));
             improved(&fit.estimate);

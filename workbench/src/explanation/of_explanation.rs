@@ -32,7 +32,10 @@ impl Explanation {
                 hopeless_base: is_unsuitable(experiment, &found.before, &found.after),
             },
             error_refitted: found.refitted.as_ref().map(Fit::error),
-            corrected_constants: found.corrected.as_ref().map(Corrected::new),
+            corrected_constants: found
+                .corrected
+                .as_ref()
+                .map(|constants| Corrected::new(constants, found.verdict, found.after.error())),
             steps: found.steps.iter().map(step).collect(),
             unexplained: Unexplained {
                 share: found.rest.share,

@@ -113,6 +113,9 @@ fn corrected_constants(corrected: &Corrected, error_before: f64) -> Markup {
     let rows: Vec<Vec<String>> = rows.collect();
     html! {
         p { (corrected.sentence(error_before)) }
+        @if let Some(reason) = &corrected.withheld {
+            p { (reason) }
+        }
         ul {
             @for (valve, low, high) in corrected.flow_changes() {
                 li { (valve) ": flow " (format!("{:+.1} to {:+.1}", 100.0 * low, 100.0 * high)) " % of the declared curve" }

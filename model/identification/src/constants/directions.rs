@@ -24,7 +24,14 @@ impl Directions {
     /// The directions of a model's constants.
     #[must_use]
     pub fn new(declared: &Constants) -> Self {
-        let parameters = parameters(declared);
+        Self::except(declared, &[])
+    }
+
+    /// The directions of a model's constants but for some that are exact, by their names in a model file.
+    #[must_use]
+    pub fn except(declared: &Constants, exact: &[String]) -> Self {
+        let mut parameters = parameters(declared);
+        parameters.retain(|one| one.name().is_none_or(|name| !exact.contains(&name)));
         let prior = Prior::new(declared, &parameters);
         let sigma = DVector::from_vec(prior.sigma);
         let size = parameters.len();

@@ -27,7 +27,13 @@ impl FreeConstants {
     /// The declared constants, free to change within their tolerances.
     #[must_use]
     pub fn of(declared: &Model) -> Self {
-        let directions = Arc::new(Directions::new(declared.constants()));
+        Self::except(declared, &[])
+    }
+
+    /// The same but for some that are exact, by their names in a model file (`table.key`).
+    #[must_use]
+    pub fn except(declared: &Model, exact: &[String]) -> Self {
+        let directions = Arc::new(Directions::except(declared.constants(), exact));
         Self {
             errors: vec![0.0; directions.len()],
             share: 1.0,

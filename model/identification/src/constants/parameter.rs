@@ -95,6 +95,17 @@ impl Parameter {
         matches!(self, Self::Sensor(_))
     }
 
+    /// Its name in a model file, `table.key`; `None` for a sensor, which is an effect.
+    #[must_use]
+    pub fn name(&self) -> Option<String> {
+        match self {
+            Self::Scalar(scalar) => Some(scalar.name.to_owned()),
+            Self::Threshold(valve) => Some(format!("{}.current_a", valve.table())),
+            Self::Flow(valve, _) => Some(format!("{}.flow_lpm", valve.table())),
+            Self::Sensor(_) => None,
+        }
+    }
+
     /// Whether it belongs to a flow curve.
     #[must_use]
     pub fn is_flow(&self) -> bool {

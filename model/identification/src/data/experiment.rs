@@ -34,6 +34,15 @@ pub struct Nuisance {
 /// Prior sigma of [`Nuisance::load`]: a load is weighed to about half a percent (docs/campaigns.md).
 pub const LOAD_PRIOR: f64 = 0.005;
 
+/// What a baseline adds to the noise of a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Widening {
+    /// Factor on the standard deviation: noise of the baseline, and discrepancy of the model.
+    pub factor: f64,
+    /// Share of the variance that is a discrepancy of the model; `None` in a state that the baseline does not show.
+    pub discrepancy: Option<f64>,
+}
+
 /// A prepared run.
 #[derive(Debug, Clone)]
 pub struct ReadyRun {
@@ -55,6 +64,8 @@ pub struct ReadyRun {
     pub start_angle_deg: f64,
     /// Number of log samples that each sample is the mean of; one except in a condensed run.
     pub averaged: Vec<f64>,
+    /// What a baseline adds to the noise of each sample by [`Channel::index`]; empty without one.
+    pub widened: [Vec<Widening>; 4],
     /// Number of samples left out before a flow bench reached its pressure.
     pub settling_samples: usize,
     traces: Traces,
@@ -200,6 +211,7 @@ impl ReadyRun {
             measured,
             regimes,
             settling_samples,
+            widened: Default::default(),
             averaged: vec![1.0; samples],
             traces: Traces::new(samples),
             defect_correction: None,
@@ -222,6 +234,36 @@ impl ReadyRun {
             start_angle_deg,
             traces: Traces::new(self.len()),
             ..self.clone()
+        }
+    }
+
+    /// The run with other measured values, and factors on their standard deviations.
+    #[must_use]
+    pub(crate) fn with_measured(
+        &self,
+        measured: [Option<Vec<f64>>; 4],
+        widened: [Vec<Widening>; 4],
+    ) -> Self {
+        Self {
+            measured,
+            widened,
+            ..self.clone()
+        }
+    }
+
+    /// The run with a load error as a part of its load.
+    #[must_use]
+    pub(crate) fn loaded(self, nuisance: Nuisance) -> Self {
+        let bench = match self.bench {
+            Bench::Hitch { load_kg } => Bench::Hitch {
+                load_kg: load_kg * (1.0 + nuisance.load),
+            },
+            flow @ Bench::Flow { .. } => flow,
+        };
+        Self {
+            bench,
+            traces: Traces::new(self.len()),
+            ..self
         }
     }
 
@@ -256,6 +298,10 @@ impl ReadyRun {
                 .map(|first| self.regimes[first])
                 .collect(),
             averaged: stretches.sizes(),
+            widened: self.widened.each_ref().map(|all| match all.is_empty() {
+                true => Vec::new(),
+                false => stretches.firsts().map(|first| all[first]).collect(),
+            }),
             traces: Traces::new(stretches.len()),
             defect_correction: None,
             ..*self

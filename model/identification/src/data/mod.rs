@@ -5,6 +5,7 @@ pub(crate) mod condense;
 pub mod conditioning;
 pub(crate) mod defect_correction;
 pub mod experiment;
+pub mod limit;
 pub mod noise;
 pub mod problem;
 pub mod regime;

@@ -22,7 +22,9 @@ const RATE_HZ: f64 = 50.0;
 /// The manoeuvre for an unexplained error that depends on these signals, the most important first.
 #[must_use]
 pub fn exploring(problem: Problem<'_>, fit: &Fit, depends_on: &[Signal]) -> NextExperiment {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let levels = Levels::new(experiment, model);
     let machine = fit.estimate.applied_to(model);
     let lifting = is_while_lifting(experiment, fit);

@@ -55,7 +55,9 @@ fn costs(
     estimate: &Estimate,
     tried: &[Clocks],
 ) -> Vec<[f64; 4]> {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let model = estimate.applied_to(model);
     let of_runs: Vec<Vec<[f64; 4]>> = experiment
         .runs

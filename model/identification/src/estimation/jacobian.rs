@@ -50,7 +50,9 @@ const HUBER_THRESHOLD: f64 = 10.0;
 /// Whitened residuals of every run under an estimate.
 #[must_use]
 pub fn residuals(problem: Problem<'_>, weights: &Weights, estimate: &Estimate) -> Vec<Vec<f64>> {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let model = estimate.applied_to(model);
     (0..experiment.runs.len())
         .into_par_iter()

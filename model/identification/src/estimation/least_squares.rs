@@ -72,6 +72,9 @@ pub(crate) fn descend(
     let mut slow = None;
     let mut last_reduction = 0.0;
     for made in 0..jacobians {
+        if problem.problem.limit.is_over() {
+            break;
+        }
         if made % SLOW_EVERY == 0 {
             slow = None;
         }

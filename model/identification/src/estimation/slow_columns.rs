@@ -51,7 +51,9 @@ fn offset_columns(
     weights: &Weights,
     estimate: &Estimate,
 ) -> [Vec<Vec<f64>>; 4] {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let model = estimate.applied_to(model);
     let columns: Vec<[Vec<f64>; 4]> = (0..experiment.runs.len())
         .into_par_iter()

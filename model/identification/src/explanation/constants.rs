@@ -1,15 +1,15 @@
 //! Search with the declared constants and, if the data are evidence against those, with free constants.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use crate::constants::fitted::{CurvePoint, FittedConstant};
+use crate::constants::free::FreeConstants;
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, fit, refine};
 use crate::explanation::suspected_constants::suspected;
 use crate::search::candidates::Progress;
-use crate::search::subset::{Found, Options, Search};
+use crate::search::subset::{Accuracy, Found, Options, Search};
 use crate::selection::constants_evidence::{Comparison, covariance};
 
 /// Rounds of the search with the declared constants before the constants are suspected.
@@ -83,28 +83,6 @@ pub(crate) fn search_with_constants(
     options: Options<'_>,
     progress: Progress,
 ) -> Searched {
-    let mut declared = Search::new(problem, before, options, progress);
-    let half = options.deadline.map(half_way);
-    let mut goes_on = true;
-    for _ in 0..FIRST_ROUNDS {
-        goes_on = goes_on && declared.advance(half);
-    }
-    let suspected = |search: &Search| {
-        let fewer = search.slightly_worse_with_fewer();
-        match options.is_over() {
-            true => None,
-            false => suspected(problem, search.present(), &fewer),
-        }
-    };
-    let mut found = suspected(&declared);
-    if found.is_none() && !declared.is_stable() {
-        while declared.advance(options.deadline) {}
-        found = suspected(&declared);
-    }
-    let Some(found) = found else {
-        return Searched::declared(declared.found());
-    };
-    progress("the constants of the model");
     let search = |start: Estimate| {
         let alone = Estimate {
             constants: start.constants.clone(),
@@ -113,9 +91,43 @@ pub(crate) fn search_with_constants(
         let corrected = fit(problem, alone);
         let mut free = Search::new(problem, &corrected, options, progress);
         free.consider(refine(problem, start));
-        while free.advance(options.deadline) {}
+        while free.advance(options.limit) {}
         (corrected, free)
     };
+    if options.constants == Accuracy::DataSheet {
+        progress("the constants of the model");
+        let (corrected, free) = search(Estimate {
+            constants: Some(FreeConstants::except(problem.model, options.exact)),
+            ..before.estimate.clone()
+        });
+        return Searched {
+            found: free.found(),
+            corrected: Some(corrected),
+            other: None,
+        };
+    }
+    let mut declared = Search::new(problem, before, options, progress);
+    let half = options.limit.after(0.5);
+    let mut goes_on = true;
+    for _ in 0..FIRST_ROUNDS {
+        goes_on = goes_on && declared.advance(half);
+    }
+    let suspected = |search: &Search| {
+        let fewer = search.slightly_worse_with_fewer();
+        match options.constants == Accuracy::Adopted || options.is_over() {
+            true => None,
+            false => suspected(problem, search.present(), &fewer),
+        }
+    };
+    let mut found = suspected(&declared);
+    if found.is_none() && !declared.is_stable() {
+        while declared.advance(options.limit) {}
+        found = suspected(&declared);
+    }
+    let Some(found) = found else {
+        return Searched::declared(declared.found());
+    };
+    progress("the constants of the model");
     let (mut corrected, mut free) = search(found);
     for _ in 1..SEARCHES {
         match suspected(&free) {
@@ -126,7 +138,7 @@ pub(crate) fn search_with_constants(
     let mut free = free.found();
     while !options.is_over() && free.moves_to_fewer(problem, free.without_each(problem)) {}
     let comparison = Comparison::new(problem, &free.fit);
-    while comparison.is_open(declared.present()) && declared.advance(options.deadline) {}
+    while comparison.is_open(declared.present()) && declared.advance(options.limit) {}
     let off = comparison.probability_off(declared.present());
     let declared = declared.found();
     match off > 0.5 {
@@ -141,10 +153,4 @@ pub(crate) fn search_with_constants(
             other: Some((off, free.probabilities(problem))),
         },
     }
-}
-
-/// The time half way from now to a deadline.
-fn half_way(deadline: Instant) -> Instant {
-    let now = Instant::now();
-    now + deadline.saturating_duration_since(now) / 2
 }

@@ -24,7 +24,10 @@ use crate::search::subset::{Found, Options};
 use crate::selection::candidate::{Candidate, weigh};
 use crate::selection::evidence::DISTINGUISHABLE;
 use crate::selection::hold_out::{HeldOut, held_out};
-use crate::selection::posterior::{Weighed, key_of, probability_of};
+use crate::selection::posterior::{Weighed, key_of, probability_of, probability_of_any};
+
+/// Smallest probability of an effect, or of one of its confounded alternatives, that belongs to an explanation.
+const PRESENT: f64 = 0.5;
 
 /// Fewest compared samples for any conclusion.
 const FEWEST_SAMPLES: usize = 50;
@@ -74,6 +77,8 @@ pub struct ExplanationStep {
     /// Posterior probability that the effect is present in addition to those of the other steps; confounded
     /// alternatives share it.
     pub confidence: f64,
+    /// Probability that the effect or one of its confounded alternatives is present.
+    pub presence: f64,
     /// Root mean square of its projected signature, in sigmas.
     pub detectability: f64,
     /// Share of the mean square beyond noise that the effect explains, weighted by its signature.
@@ -123,7 +128,9 @@ pub struct Explanation {
 /// Fits loads and clocks of a model; its effects stay unchanged.
 #[must_use]
 pub fn fit_base(problem: Problem<'_>) -> Fit {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let start = Estimate::new(experiment, model.effects.clone());
     refine(problem, start.with_adopted())
 }
@@ -131,7 +138,9 @@ pub fn fit_base(problem: Problem<'_>) -> Fit {
 /// Fits a model with all its effects.
 #[must_use]
 pub fn fit_freely(problem: Problem<'_>) -> Fit {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let start = Estimate::new(experiment, model.effects.clone());
     fit(problem, start)
 }
@@ -145,20 +154,26 @@ pub fn explain(problem: Problem<'_>, progress: Progress) -> Explanation {
 /// [`explain`] with options.
 #[must_use]
 pub fn explain_with(problem: Problem<'_>, options: Options<'_>, progress: Progress) -> Explanation {
+    let problem = problem.within(options.limit);
     let Problem { model, .. } = problem;
     let before = fit_base(problem);
     let adopted = !model.effects.is_empty();
     let refitted = adopted.then(|| fit_freely(problem));
     let mut searched = match enough(&before) {
-        true => search_with_constants(problem, &before, options, progress),
+        true => {
+            let limit = options.limit.of_search();
+            let options = Options { limit, ..options };
+            search_with_constants(problem.within(limit), &before, options, progress)
+        }
         false => Searched::declared(Found::nothing(&before)),
     };
     progress("how sure that is");
     let mut steps = steps(problem, &before, &searched);
     loop {
         let fewer = steps.iter().rev().skip(1).map(|step| step.fit.clone());
-        if let Some(insignificant) = steps.iter().position(may_be_absent) {
-            searched.found.remove(problem, insignificant);
+        let improbable = improbable(&steps);
+        if let Some(step) = steps.iter().position(may_be_absent).or(improbable) {
+            searched.found.remove(problem, step);
         } else if !searched.found.moves_to_fewer(problem, fewer.collect()) {
             break;
         }
@@ -176,6 +191,13 @@ fn may_be_absent(step: &ExplanationStep) -> bool {
         [(low, high)] => (*low..=*high).contains(&off),
         _ => false,
     }
+}
+
+/// The least probable step, if it and its confounded alternatives are rather absent than present.
+fn improbable(steps: &[ExplanationStep]) -> Option<usize> {
+    let least =
+        (0..steps.len()).min_by(|&a, &b| steps[a].presence.total_cmp(&steps[b].presence))?;
+    (steps[least].presence < PRESENT).then_some(least)
 }
 
 /// The members of the set as steps, in greedy order of the cost reduction that each adds.
@@ -203,6 +225,10 @@ fn steps(problem: Problem<'_>, before: &Fit, searched: &Searched) -> Vec<Explana
         let estimate = &found.fit.estimate;
         let id = estimate.effects[effect].effect.id();
         let probability = probability_of(&weighed, id) * candidate.plausibility();
+        let indistinguishable = alternatives(problem, &whole, effect, &weighed);
+        let ids = indistinguishable.iter().map(|other| other.effect.id());
+        let ids: Vec<&str> = ids.chain([id]).collect();
+        let any = probability_of_any(&weighed, &ids) * candidate.plausibility();
         steps.push(ExplanationStep {
             effect: candidate.effect,
             error_before,
@@ -210,10 +236,11 @@ fn steps(problem: Problem<'_>, before: &Fit, searched: &Searched) -> Vec<Explana
             held_out_before,
             held_out_after,
             confidence: searched.averaged(id, probability),
+            presence: any.max(searched.averaged(id, probability)),
             detectability: candidate.detectability,
             explained_share: candidate.explained_share,
             other_forms: other_forms(&found.fit, id, &weighed),
-            indistinguishable: alternatives(problem, &whole, effect, &weighed),
+            indistinguishable,
             values: candidate.values().to_vec(),
             intervals: candidate.intervals,
             changed_from: estimate.adopted_as(id).map(|adopted| adopted.size),
@@ -322,12 +349,16 @@ fn concluded(
         Attribution::default()
     };
     let next_experiment = match verdict {
+        Verdict::Ambiguous if problem.limit.is_over() => None,
         Verdict::Ambiguous => next_experiment(problem, &pairs(&after, &steps)),
         Verdict::NotEnoughData => missing.map(NextExperiment::missing),
-        Verdict::Unexplained => Some(exploring(problem, &after, &rest.depends_on)),
-        Verdict::NothingMissing | Verdict::Explained => None,
+        Verdict::Unexplained if !problem.limit.is_over() => {
+            Some(exploring(problem, &after, &rest.depends_on))
+        }
+        Verdict::Unexplained | Verdict::NothingMissing | Verdict::Explained => None,
     };
     let undetected = match verdict {
+        _ if problem.limit.is_over() => Vec::new(),
         Verdict::Unexplained => Vec::new(),
         _ => undetected(problem, &after),
     };

@@ -3,5 +3,6 @@
 pub mod constants;
 pub mod diagnosis;
 pub mod explain;
+pub mod starting_point;
 pub(crate) mod suspected_constants;
 pub mod undetected;

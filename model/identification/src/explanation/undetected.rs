@@ -29,7 +29,9 @@ pub struct Undetected {
 /// detectability.
 #[must_use]
 pub fn undetected(problem: Problem<'_>, fit: &Fit) -> Vec<Undetected> {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let experiment =
         &experiment.coarse_in_time(&fit.estimate.applied_to(model), &fit.estimate.nuisances);
     let base = huber(fit.residuals.clone());

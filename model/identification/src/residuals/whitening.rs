@@ -16,7 +16,7 @@ use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Currents, Model, units};
 use rayon::prelude::*;
 
-use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::experiment::{Experiment, ReadyRun, Widening};
 use crate::data::problem::Problem;
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
@@ -65,7 +65,9 @@ impl Weights {
     /// Weights at `estimate`.
     #[must_use]
     pub fn new(problem: Problem<'_>, estimate: &Estimate) -> Self {
-        let Problem { experiment, model } = problem;
+        let Problem {
+            experiment, model, ..
+        } = problem;
         let model = estimate.applied_to(model);
         let runs: Vec<RunWeights> = (0..experiment.runs.len())
             .into_par_iter()
@@ -103,8 +105,6 @@ impl Weights {
         Self { runs, counts }
     }
 
-    /// Number of compared samples.
-    #[must_use]
     /// The wider standard deviation of either at each sample; a sample that one of them leaves out is left out.
     #[must_use]
     pub fn wider(&self, other: &Self) -> Self {
@@ -121,6 +121,8 @@ impl Weights {
             .collect()
     }
 
+    /// Number of compared samples.
+    #[must_use]
     pub fn count(&self) -> usize {
         self.counts.iter().sum()
     }
@@ -195,7 +197,19 @@ impl RunWeights {
             }
         }
         weights.filter_angle(experiment, run, model, [&below, &above]);
+        weights.widen(&run.widened);
         weights
+    }
+
+    /// Multiplies the standard deviations. The gains of the angle's filter stay: sensor noise and walk widen alike.
+    fn widen(&mut self, widened: &[Vec<Widening>; 4]) {
+        let samples = self.gain.len();
+        for (channel, widened) in widened.iter().enumerate() {
+            let scales = &mut self.scale[channel * samples..];
+            for (scale, widened) in scales.iter_mut().zip(widened) {
+                *scale /= widened.factor;
+            }
+        }
     }
 
     /// Gains of the scalar Kalman filter for the random walk of the angle.
@@ -226,20 +240,6 @@ impl RunWeights {
         }
     }
 
-    /// Number of compared samples of a channel.
-    #[must_use]
-    pub fn compared(&self, channel: usize) -> usize {
-        let samples = self.gain.len();
-        let part = &self.scale[channel * samples..(channel + 1) * samples];
-        let counts = part.iter().zip(&self.kept);
-        counts
-            .filter(|(scale, kept)| **scale > 0.0 && **kept)
-            .count()
-    }
-
-    /// Whitened residuals of the run, channel after channel; zero for samples that are left out.
-    #[must_use]
-    pub fn whiten(&self, run: &ReadyRun, trace: &Trace) -> Vec<f64> {
     /// The wider standard deviation of either at each sample, and the filter that has it.
     fn wider(&self, other: &Self) -> Self {
         let mut wider = self.clone();
@@ -282,6 +282,20 @@ impl RunWeights {
         moved
     }
 
+    /// Number of compared samples of a channel.
+    #[must_use]
+    pub fn compared(&self, channel: usize) -> usize {
+        let samples = self.gain.len();
+        let part = &self.scale[channel * samples..(channel + 1) * samples];
+        let counts = part.iter().zip(&self.kept);
+        counts
+            .filter(|(scale, kept)| **scale > 0.0 && **kept)
+            .count()
+    }
+
+    /// Whitened residuals of the run, channel after channel; zero for samples that are left out.
+    #[must_use]
+    pub fn whiten(&self, run: &ReadyRun, trace: &Trace) -> Vec<f64> {
         let mut residual = vec![0.0; 4 * run.len()];
         for channel in Channel::ALL {
             let Some(measured) = &run.measured[channel.index()] else {

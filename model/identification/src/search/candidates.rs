@@ -17,7 +17,9 @@ pub(crate) fn absent(model: &Model, estimate: &Estimate) -> Vec<&'static dyn Eff
 
 /// Those of them that act on a measured channel: an angle sensor that was not logged explains nothing.
 pub(crate) fn showing(problem: Problem<'_>, estimate: &Estimate) -> Vec<&'static dyn Effect> {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let mut absent = absent(model, estimate);
     absent.retain(|effect| {
         let mut channels = effect.channels().iter();

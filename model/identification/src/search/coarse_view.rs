@@ -21,7 +21,9 @@ pub(crate) struct Coarse<'a> {
 impl<'a> Coarse<'a> {
     /// Condenses the experiment of a fit.
     pub fn new(problem: Problem<'a>, present: &'a Fit) -> Self {
-        let Problem { experiment, model } = problem;
+        let Problem {
+            experiment, model, ..
+        } = problem;
         let fitted = present.estimate.applied_to(model);
         let nuisances = &present.estimate.nuisances;
         let few = experiment.condensed(&fitted, nuisances);

@@ -3,6 +3,7 @@
 use hitch_plant::{AddedEffect, Effect, SizeResponse};
 use rayon::prelude::*;
 
+use crate::data::limit::Limit;
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::jacobian::{Jacobian, difference, huber, subtract};
@@ -92,6 +93,8 @@ pub(crate) struct DictionaryBuilder<'a> {
     pub scans: &'a Scans,
     /// Smallest predicted reduction of the cost for which an effect is examined more closely.
     pub worthwhile: f64,
+    /// Until when columns are simulated; then the dictionary has those so far.
+    pub limit: Limit<'a>,
 }
 
 impl DictionaryBuilder<'_> {
@@ -145,7 +148,7 @@ impl DictionaryBuilder<'_> {
         here: &'s [Vec<f64>],
     ) -> Screen<'s> {
         Screen {
-            problem,
+            problem: problem.within(self.limit),
             coarse: self.coarse,
             scans: self.scans,
             worthwhile: self.worthwhile,
@@ -210,7 +213,8 @@ impl DictionaryBuilder<'_> {
     fn changed(&self, screen: &Screen) -> Vec<Entry> {
         let estimate = &self.coarse.present.estimate;
         let indices = (0..estimate.effects.len()).into_par_iter();
-        let unchanged = indices.filter(|&index| estimate.is_unchanged(index));
+        let goes_on = !screen.problem.limit.is_over();
+        let unchanged = indices.filter(|&index| goes_on && estimate.is_unchanged(index));
         let sizes = unchanged.flat_map_iter(|index| {
             let sizes = changed_sizes(&estimate.effects[index]).into_iter();
             sizes.map(move |size| (index, size))

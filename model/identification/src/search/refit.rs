@@ -70,7 +70,7 @@ impl Refits<'_> {
                 false => (predicted + penalty, estimate.clone()),
             }
         };
-        let starts = starts.into_par_iter();
+        let starts = starts.into_par_iter().filter(|_| !self.options.is_over());
         let starts = starts.map(|start| pruned(start, cost)).collect();
         let mut starts = distinct(starts);
         starts.retain(|(_, start)| !known.contains(&key_of(start)));
@@ -87,6 +87,7 @@ impl Refits<'_> {
         let short_fits: Vec<(f64, Estimate)> = starts.filter_map(unless_past_deadline).collect();
         let nearest = self.nearest(short_fits, REFINED).into_par_iter();
         let coarse_fits: Vec<(f64, Fit)> = nearest
+            .filter(|_| !self.options.is_over())
             .map(|start| {
                 let fit = with_best_delay_split(coarse, refine(coarse, start));
                 let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());

@@ -58,7 +58,8 @@ pub(crate) struct Screen<'a> {
 impl Screen<'_> {
     /// The columns of effects that the model lacks.
     pub fn columns(&self, effects: Vec<&'static dyn Effect>) -> Vec<Entry> {
-        let forms = effects.into_par_iter();
+        let goes_on = |_: &&'static dyn Effect| !self.problem.limit.is_over();
+        let forms = effects.into_par_iter().filter(goes_on);
         let mut forms: Vec<Vec<End>> = forms.map(|effect| self.at_first_sizes(effect)).collect();
         let here = self.cost();
         let predicted: Vec<f64> = forms.par_iter().map(|ends| self.predicted(ends)).collect();
@@ -66,7 +67,7 @@ impl Screen<'_> {
         let worthwhile = (PROMISING * (here - least)).max(self.worthwhile);
         let examined = forms.par_iter_mut().zip(&predicted);
         examined.for_each(|(ends, predicted)| {
-            if here - predicted > worthwhile {
+            if here - predicted > worthwhile && !self.problem.limit.is_over() {
                 self.examine(ends);
             }
         });
@@ -93,7 +94,9 @@ impl Screen<'_> {
         }
         let found = forms.into_par_iter().flat_map_iter(|mut ends| {
             let promising = self.cost() - self.predicted(&ends) > self.worthwhile;
-            self.fine_scan(&mut ends, promising);
+            if !self.problem.limit.is_over() {
+                self.fine_scan(&mut ends, promising);
+            }
             columns(ends, self.here)
         });
         entries.par_extend(found);

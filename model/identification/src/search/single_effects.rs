@@ -57,6 +57,7 @@ pub fn try_each(
         changes: false,
         scans: &scans,
         worthwhile: 0.5 * penalty.minimum(),
+        limit: problem.limit,
     };
     let dictionary = builder.thorough(builder.dictionary());
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());

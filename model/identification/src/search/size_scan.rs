@@ -158,7 +158,9 @@ pub(crate) fn scan(
     hint: &AddedEffect,
     grid: &Grid,
 ) -> Vec<AddedEffect> {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let failed = failed(base);
     let informative = match grid.informative {
         Informative::Changed => {

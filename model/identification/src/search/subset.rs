@@ -11,12 +11,12 @@
 //! remove it again. A subset is judged with all its members at once.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use hitch_plant::Effect;
 use rayon::prelude::*;
 
 use crate::data::clocks::Clocks;
+use crate::data::limit::Limit;
 use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate, evaluate_weighted, refine};
 use crate::search::candidates::{Progress, showing};
@@ -48,13 +48,29 @@ pub(crate) const FAINT: f64 = 1.5;
 /// Sets per round that are evaluated on held-out runs.
 const TRIED: usize = 3;
 
+/// How accurate the constants of a model are.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Accuracy {
+    /// Unknown: as exact as those of any model, or off by a share of the tolerances of data sheets; the campaign decides.
+    #[default]
+    Unknown,
+    /// That of a data sheet: they are fitted together with the effects, but for those in [`Options::exact`].
+    DataSheet,
+    /// As they were on a baseline, which is subtracted.
+    Adopted,
+}
+
 /// Options of a search.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
     /// Whether the sizes of effects that the model had before the search may change.
     pub changes: bool,
-    /// Time at which the search returns its best result so far.
-    pub deadline: Option<Instant>,
+    /// How accurate the constants of the model are.
+    pub constants: Accuracy,
+    /// Constants of a data sheet that are exact, by their names in a model file (`table.key`).
+    pub exact: &'a [String],
+    /// Until when the search goes on; then it returns its best result so far.
+    pub limit: Limit<'a>,
     /// Callback with each fit that becomes the best one during the search.
     pub improved: &'a (dyn Fn(&Fit) + Sync),
 }
@@ -63,7 +79,9 @@ impl Default for Options<'_> {
     fn default() -> Self {
         Self {
             changes: true,
-            deadline: None,
+            constants: Accuracy::default(),
+            exact: &[],
+            limit: Limit::default(),
             improved: &|_| {},
         }
     }
@@ -73,7 +91,8 @@ impl std::fmt::Debug for Options<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Options")
             .field("changes", &self.changes)
-            .field("deadline", &self.deadline)
+            .field("constants", &self.constants)
+            .field("limit", &self.limit)
             .finish_non_exhaustive()
     }
 }
@@ -82,8 +101,7 @@ impl Options<'_> {
     /// Whether the deadline has passed.
     #[must_use]
     pub fn is_over(&self) -> bool {
-        self.deadline
-            .is_some_and(|deadline| Instant::now() >= deadline)
+        self.limit.is_over()
     }
 }
 
@@ -204,8 +222,8 @@ impl<'a> Search<'a> {
 
     /// Makes another round, within a deadline. Returns whether there may be more: the round found something better, and
     /// neither the deadline nor the limit of rounds is reached.
-    pub fn advance(&mut self, deadline: Option<Instant>) -> bool {
-        self.options.deadline = deadline;
+    pub fn advance(&mut self, limit: Limit<'a>) -> bool {
+        self.options.limit = limit;
         if self.is_stable || self.rounds >= ROUNDS || self.options.is_over() {
             return false;
         }
@@ -334,6 +352,8 @@ impl<'a> Search<'a> {
             changes: self.options.changes,
             scans: &self.scans,
             worthwhile: 0.5 * Penalty::given(self.problem.experiment, coarse.present).minimum(),
+            // The other half is for the fits of the sets that it leads to.
+            limit: self.options.limit.after(0.5),
         }
     }
 

@@ -196,8 +196,8 @@ fn weigh_with(
             };
             let rise = 1.96f64.powi(2) * variance * signature.inflation;
             let end = |half: f64| match ends {
-                Ends::Profile => profile.end(half, rise),
-                Ends::Curvature => half,
+                Ends::Profile if !problem.limit.is_over() => profile.end(half, rise),
+                Ends::Profile | Ends::Curvature => half,
             };
             let [down, up] = [-predicted, predicted].map(end);
             (

@@ -12,7 +12,9 @@ pub const QUANTILES: [f64; 3] = [0.2, 0.45, 0.7];
 /// for a current. `None` if the campaign does not contain it.
 #[must_use]
 pub fn quantiles(problem: Problem<'_>, signal: &str) -> Option<[f64; 3]> {
-    let Problem { experiment, model } = problem;
+    let Problem {
+        experiment, model, ..
+    } = problem;
     let mut values: Vec<f64> = experiment
         .runs
         .iter()

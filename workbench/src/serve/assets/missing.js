@@ -122,12 +122,14 @@ function explanation(found, keeps, run) {
  * @param {Constants} found */
 function constants(found) {
   const percent = (/** @type {number} */ share) => `${share >= 0 ? "+" : ""}${(100 * share).toFixed(1)}`;
+  const interval = (/** @type {number | null} */ low, /** @type {number | null} */ high) =>
+    low === null || high === null ? "" : ` (95 %: ${number(low)} to ${number(high)})`;
   const moved = found.moved.map((one) => element("li", {},
-    `${one.name}: ${number(one.declared)} → ${number(one.fitted)} ${one.unit} (95 %: ${number(one.low)} to ${number(one.high)})`));
+    `${one.name}: ${number(one.declared)} → ${number(one.fitted)} ${one.unit}${interval(one.low, one.high)}`));
   const curves = found.curves.map((one) => element("li", {},
     `${one.valve}: flow ${percent(one.low)} to ${percent(one.high)} % of the declared curve`));
   return element("div", { class: "effect", id: "constants" }, element("h3", {}, "Constants of the model"),
-    element("p", {}, found.sentence), element("ul", {}, ...curves, ...moved));
+    element("p", {}, [found.sentence, found.withheld].filter(Boolean).join(" ")), element("ul", {}, ...curves, ...moved));
 }
 
 /** The suggested term for the remaining error.

@@ -135,6 +135,8 @@ interface Explained {
 /** Corrected constants of the base model. */
 interface Constants {
   sentence: string;
+  /** Why there are no intervals. */
+  withheld: string | null;
   moved: { name: string; unit: string; declared: number; fitted: number; low: number | null; high: number | null }[];
   curves: { valve: string; low: number; high: number }[];
 }

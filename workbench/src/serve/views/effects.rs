@@ -109,6 +109,7 @@ fn constants(corrected: &Corrected, error_before: f64) -> Value {
     let curve = |(valve, low, high): (&'static str, f64, f64)| json!({ "valve": valve, "low": low, "high": high });
     json!({
         "sentence": corrected.sentence(error_before),
+        "withheld": corrected.withheld,
         "moved": corrected.moved().collect::<Vec<_>>(),
         "curves": curves.map(curve).collect::<Vec<_>>(),
     })

@@ -1,0 +1,106 @@
+//! `hitch adopt`: from a data sheet to a model of one machine.
+
+use std::path::PathBuf;
+
+use hitch_identification::constants::parameter::parameters;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::estimate::Estimate;
+use hitch_identification::search::subset::{Accuracy, Options};
+use hitch_plant::Model;
+
+use crate::error::Error;
+use crate::explanation::{Found, rebuilt};
+use crate::model_arg::ModelArg;
+use crate::output::{self, JsonArg};
+use crate::outputs::{Outputs, campaign_files};
+use crate::report::explanation_page;
+use crate::search_args::SearchArgs;
+use crate::text::wrapped;
+
+/// Arguments of `hitch adopt`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: hitch adopt may --model data-sheet.toml --out tractor.toml --hold cylinder.bore_mm\n\n\
+    The constants are fitted within the tolerances of data sheets, together with the effects that the machine has. \
+    Take a campaign of the machine in good order: `hitch changes` and `hitch explain --baseline` then find what has changed since."
+)]
+pub struct Args {
+    /// Folder of the campaign
+    campaign: PathBuf,
+    #[command(flatten)]
+    model: ModelArg,
+    /// Write the model of the machine to this file, updated during the search with the best model so far
+    #[arg(long, value_name = "MACHINE.toml")]
+    out: PathBuf,
+    /// Constant that is exact, by its name in the model file; several times for several
+    #[arg(long, value_name = "TABLE.KEY")]
+    hold: Vec<String>,
+    /// Write a report to this file: self-contained HTML
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    search: SearchArgs,
+    #[command(flatten)]
+    json: JsonArg,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the campaign or the model file is invalid, a constant is not known, or a result cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    let mut inputs = campaign_files(&args.campaign);
+    inputs.push(args.model.file());
+    let wanted = [
+        Some(args.out.as_path()),
+        args.report.as_deref(),
+        args.json.target(),
+    ];
+    let outputs = Outputs::check(wanted, &inputs)?;
+    check_held(&args.hold, &args.model.load()?)?;
+    let (model, campaign) = args.model.load_for(&args.campaign)?;
+    let base = model.clone();
+    let name = output::stem(&args.out);
+    let improved = |estimate: &Estimate| {
+        if !output::is_stdout(&args.out) {
+            let partial = rebuilt(&base, estimate, name.clone());
+            // A fault is reported by the last write.
+            let _ = output::write_file(&args.out, hitch_model_file::to_toml(&partial).as_bytes());
+        }
+    };
+    let options = Options {
+        constants: Accuracy::DataSheet,
+        exact: &args.hold,
+        ..args.search.options()
+    };
+    let experiment = Experiment::new(&campaign, &model);
+    let found = Found::new(experiment, model, options, &improved);
+    let adopted = found.rebuilt(name.clone());
+    output::write_file(&args.out, hitch_model_file::to_toml(&adopted).as_bytes())?;
+    if let Some(path) = &args.report {
+        output::write_file(path, explanation_page::page(&found).as_bytes())?;
+    }
+    outputs.tell(&args.json, &found.shown, || {
+        let next = format!(
+            "Next, after a change: hitch explain NEW --model {} --baseline {}",
+            args.out.display(),
+            args.campaign.display()
+        );
+        format!("{}\n{}", found.shown, wrapped(&next))
+    })
+}
+
+/// Whether all held constants are among those that are fitted.
+fn check_held(held: &[String], model: &Model) -> Result<(), Error> {
+    let mut known: Vec<String> = Vec::new();
+    for parameter in parameters(model.constants()) {
+        known.extend(parameter.name().filter(|name| !known.contains(name)));
+    }
+    let unknown = held.iter().find(|name| !known.contains(name));
+    unknown.map_or(Ok(()), |name| {
+        Err(Error::Usage(format!(
+            "--hold {name}: no constant that is fitted; there are {}",
+            known.join(", ")
+        )))
+    })
+}
