@@ -1,5 +1,6 @@
 //! Tests of the program and of its interfaces to other tools.
 
+mod adopt;
 mod appearance;
 mod bad_input;
 mod bad_output;
