@@ -5,16 +5,14 @@ use std::sync::OnceLock;
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
-use hitch_identification::data::problem::Problem;
-use hitch_identification::estimation::baseline::Baseline;
-use hitch_identification::search::subset::{Accuracy, Options};
+use hitch_identification::search::subset::Options;
 use hitch_plant::Model;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
-use crate::explanation::{Explanation, Found};
+use crate::explanation::{Explanation, Found, Since};
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
@@ -116,11 +114,10 @@ fn one(args: &Args, new: &Path) -> Result<(), Error> {
     outputs.tell(&args.json, &changes, || changes.to_string())
 }
 
-/// A reference campaign, and the model that was adopted from it.
+/// The explanation of a reference campaign, and the model that was adopted from it.
 struct Adopted {
     found: Explanation,
-    model: Model,
-    baseline: Baseline,
+    since: Since,
 }
 
 impl Adopted {
@@ -128,12 +125,9 @@ impl Adopted {
     fn new(campaign: &Campaign, model: &Model, options: Options<'_>, progress: &Progress) -> Self {
         let experiment = Experiment::new(campaign, model);
         let found = Found::with_progress(experiment, model.clone(), options, &|_| {}, progress);
-        let model = found.rebuilt(campaign.name.clone());
-        let experiment = Experiment::new(campaign, &model);
         Self {
-            baseline: Baseline::new(Problem::new(&experiment, &model)),
+            since: Since::new(campaign, found.rebuilt(campaign.name.clone())),
             found: found.shown,
-            model,
         }
     }
 
@@ -144,13 +138,9 @@ impl Adopted {
         options: Options<'_>,
         progress: &Progress,
     ) -> (Changes, Found) {
-        let experiment = Experiment::new(new, &self.model);
-        let experiment = self.baseline.subtracted_from(experiment);
-        let options = Options {
-            constants: Accuracy::Adopted,
-            ..options
-        };
-        let new = Found::with_progress(experiment, self.model.clone(), options, &|_| {}, progress);
+        let (experiment, options) = self.since.posed(new, options);
+        let model = self.since.model.clone();
+        let new = Found::with_progress(experiment, model, options, &|_| {}, progress);
         let changes = Changes {
             baseline: self.found.clone(),
             new: new.shown.clone(),

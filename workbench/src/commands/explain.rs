@@ -4,15 +4,11 @@ use std::path::{Path, PathBuf};
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
-use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
-use hitch_identification::estimation::baseline::Baseline;
-use hitch_identification::search::subset::{Accuracy, Options};
-use hitch_plant::Model;
 
 use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
-use crate::explanation::{Found, rebuilt};
+use crate::explanation::{Found, Since, rebuilt};
 use crate::model_arg::ModelArg;
 use crate::next_command;
 use crate::output::{self, JsonArg};
@@ -67,49 +63,41 @@ pub fn run(args: &Args) -> Result<(), Error> {
 }
 
 fn many(args: &Args) -> Result<(), Error> {
-    let model = args.model.load()?;
-    let baseline = baseline(args, &model)?;
+    let since = since(args)?;
+    let model = match &since {
+        Some(since) => since.model.clone(),
+        None => args.model.load()?,
+    };
     let mut inputs = args.baseline.as_deref().map_or(Vec::new(), campaign_files);
     inputs.push(args.model.file());
     args.fleet.run(&args.campaigns, &inputs, |folder| {
         let campaign = Campaign::load_with(folder, model.linkage())?;
-        let model = args.model.nearer(model.clone(), &campaign);
         // The time limit is that of a campaign: it starts here.
-        let (experiment, options) = posed(args, &campaign, &model, baseline.as_ref());
+        let options = args.search.options();
+        let (model, experiment, options) = match &since {
+            Some(since) => {
+                let (experiment, options) = since.posed(&campaign, options);
+                (model.clone(), experiment, options)
+            }
+            None => {
+                let model = args.model.nearer(model.clone(), &campaign);
+                let experiment = Experiment::new(&campaign, &model);
+                (model, experiment, options)
+            }
+        };
         let progress = Progress::hidden();
         let found = Found::with_progress(experiment, model, options, &|_| {}, &progress);
         Ok(found.shown)
     })
 }
 
-/// What the model leaves on the campaign of `--baseline`.
-fn baseline(args: &Args, model: &Model) -> Result<Option<Baseline>, Error> {
-    let Some(folder) = &args.baseline else {
-        return Ok(None);
-    };
-    let campaign = Campaign::load_with(folder, model.linkage())?;
-    let experiment = Experiment::new(&campaign, model);
-    Ok(Some(Baseline::new(Problem::new(&experiment, model))))
-}
-
-/// A campaign less the baseline, and the options of its search.
-fn posed<'a>(
-    args: &Args,
-    campaign: &Campaign,
-    model: &Model,
-    baseline: Option<&Baseline>,
-) -> (Experiment, Options<'a>) {
-    let (experiment, options) = (Experiment::new(campaign, model), args.search.options());
-    match baseline {
-        None => (experiment, options),
-        Some(baseline) => {
-            let options = Options {
-                constants: Accuracy::Adopted,
-                ..options
-            };
-            (baseline.subtracted_from(experiment), options)
-        }
-    }
+/// The model beside the campaign of `--baseline`.
+fn since(args: &Args) -> Result<Option<Since>, Error> {
+    let folder = args.baseline.as_deref();
+    let loaded = folder
+        .map(|folder| args.model.load_for(folder))
+        .transpose()?;
+    Ok(loaded.map(|(model, campaign)| Since::new(&campaign, model)))
 }
 
 fn one(args: &Args, folder: &Path) -> Result<(), Error> {
@@ -122,7 +110,14 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
         args.json.target(),
     ];
     let outputs = Outputs::check(wanted, &inputs)?;
-    let (model, campaign) = args.model.load_for(folder)?;
+    let since = since(args)?;
+    let (model, campaign) = match &since {
+        Some(Since { model, .. }) => {
+            let campaign = Campaign::load_with(folder, model.linkage())?;
+            (model.clone(), campaign)
+        }
+        None => args.model.load_for(folder)?,
+    };
     // The best result so far is on disk if the search is interrupted.
     let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
     let base = model.clone();
@@ -133,8 +128,11 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
             let _ = output::write_file(path, hitch_model_file::to_toml(&partial).as_bytes());
         }
     };
-    let baseline = baseline(args, &model)?;
-    let (experiment, options) = posed(args, &campaign, &model, baseline.as_ref());
+    let options = args.search.options();
+    let (experiment, options) = match &since {
+        Some(since) => since.posed(&campaign, options),
+        None => (Experiment::new(&campaign, &model), options),
+    };
     let found = Found::new(experiment, model, options, &improved);
     if let Some(path) = &args.out {
         output::write_file(

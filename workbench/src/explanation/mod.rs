@@ -8,6 +8,7 @@ mod of_explanation;
 mod of_suggestion;
 mod rebuilt;
 mod show;
+mod since;
 
 pub use channel_figures::ChannelFigures;
 pub use corrected::Corrected;
@@ -16,6 +17,7 @@ pub use next::{Detail, Next};
 pub use of_diagnosis::explained;
 pub use of_explanation::parameters;
 pub use rebuilt::rebuilt;
+pub use since::Since;
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;

@@ -1,0 +1,39 @@
+//! A campaign beside the baseline that its model was adopted from.
+
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
+use hitch_identification::estimation::baseline::Baseline;
+use hitch_identification::search::subset::{Accuracy, Options};
+use hitch_plant::Model;
+
+/// An adopted model with what it leaves on its baseline.
+#[derive(Debug, Clone)]
+pub struct Since {
+    /// The model.
+    pub model: Model,
+    baseline: Baseline,
+}
+
+impl Since {
+    /// Compares an adopted model with its baseline.
+    #[must_use]
+    pub fn new(baseline: &Campaign, model: Model) -> Self {
+        let experiment = Experiment::new(baseline, &model);
+        Self {
+            baseline: Baseline::new(Problem::new(&experiment, &model)),
+            model,
+        }
+    }
+
+    /// A new campaign less the baseline, and the options of a search for what has changed since.
+    #[must_use]
+    pub fn posed<'a>(&self, new: &Campaign, options: Options<'a>) -> (Experiment, Options<'a>) {
+        let experiment = Experiment::new(new, &self.model);
+        let options = Options {
+            constants: Accuracy::Adopted,
+            ..options
+        };
+        (self.baseline.subtracted_from(experiment), options)
+    }
+}
