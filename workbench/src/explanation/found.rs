@@ -115,9 +115,10 @@ impl Explained {
         options: Options<'_>,
         progress: hitch_identification::Progress<'_>,
     ) -> Self {
-        let explanation = explain::explain_with(Problem::new(experiment, model), options, progress);
+        let problem = Problem::new(experiment, model);
+        let explanation = explain::explain_with(problem, options, progress);
         let suggestion = (!options.is_over()).then(|| {
-            suggest(Problem::new(experiment, model), &explanation, &|what| {
+            suggest(problem.within(options.limit), &explanation, &|what| {
                 progress(&format!("a term of its own, {what}"));
             })
         });
