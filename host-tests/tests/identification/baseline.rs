@@ -188,7 +188,7 @@ fn the_wrong_form_of_a_model_is_recognised() {
     }
 }
 
-/// A step of the search takes up to two seconds here, on a machine that may be busy.
+/// Without a limit it takes a minute. Single steps of the search take a second or two, more on a machine that is busy.
 #[test]
 fn a_search_ends_at_its_limit() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/known-air");
@@ -210,8 +210,5 @@ fn a_search_ends_at_its_limit() {
     let taken = start.elapsed();
     println!("{taken:.2?} of {limit:?}");
     assert!(found.unfinished);
-    assert!(
-        taken < limit.mul_f64(1.1) + Duration::from_secs(2),
-        "{taken:?}"
-    );
+    assert!(taken < 2 * limit, "{taken:?}");
 }
