@@ -4,10 +4,10 @@ use hitch_campaign::Campaign;
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
-use hitch_identification::estimation::baseline::Baseline;
 use hitch_identification::explanation::explain::{Verdict, explain_with};
-use hitch_identification::search::subset::{Accuracy, Options};
+use hitch_identification::search::subset::Options;
 use hitch_plant::{Effect, Model};
+use hitch_workbench::explanation::Since;
 
 use super::answer::{Abilities, Answer, Method};
 
@@ -34,13 +34,8 @@ impl Method for Explaining {
     }
 
     fn answer_since(&self, baseline: &Campaign, campaign: &Campaign, model: &Model) -> Answer {
-        let first = Experiment::new(baseline, model);
-        let baseline = Baseline::new(Problem::new(&first, model));
-        let experiment = baseline.subtracted_from(Experiment::new(campaign, model));
-        let options = Options {
-            constants: Accuracy::Adopted,
-            ..Options::default()
-        };
+        let since = Since::new(baseline, model.clone());
+        let (experiment, options) = since.posed(campaign, Options::default());
         answer(&experiment, model, options)
     }
 }

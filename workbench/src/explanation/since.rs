@@ -3,7 +3,7 @@
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
-use hitch_identification::estimation::baseline::Baseline;
+use hitch_identification::explanation::baseline::Baseline;
 use hitch_identification::search::subset::{Accuracy, Options};
 use hitch_plant::Model;
 

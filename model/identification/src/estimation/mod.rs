@@ -1,6 +1,5 @@
 //! Least squares: sensitivities, nuisances projected out, fits, intervals.
 
-pub mod baseline;
 pub mod bounded_minimum;
 pub(crate) mod central_differences;
 pub(crate) mod clock_synchronisation;

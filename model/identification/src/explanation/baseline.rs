@@ -19,8 +19,8 @@ use rayon::prelude::*;
 use crate::data::experiment::{Experiment, Nuisance, ReadyRun, Widening};
 use crate::data::problem::Problem;
 use crate::data::regime::Regime;
-use crate::estimate::Estimate;
-use crate::estimation::fit::{Fit, refine};
+use crate::estimation::fit::Fit;
+use crate::explanation::explain::fit_base;
 
 /// Largest difference of two logged currents of one manoeuvre, in sigmas of their difference.
 const SAME_CURRENT: f64 = 5.0;
@@ -83,11 +83,8 @@ impl Baseline {
     /// fitted.
     #[must_use]
     pub fn new(problem: Problem<'_>) -> Self {
-        let Problem {
-            experiment, model, ..
-        } = problem;
-        let start = Estimate::new(experiment, model.effects.clone());
-        let fit = refine(problem, start.with_adopted());
+        let Problem { experiment, .. } = problem;
+        let fit = fit_base(problem);
         Self {
             left: left(problem, &fit),
             loads: fit.estimate.nuisances.clone(),
