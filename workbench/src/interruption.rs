@@ -1,4 +1,4 @@
-//! Ctrl-C during a search: the first one asks for the best result so far, the second one ends the program.
+//! Ctrl-C during a search. The first one ends the search with its best result so far. The second one ends the program.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -51,7 +51,7 @@ impl ModelArg {
     }
 
     /// Reads the model and a campaign to search with it. A model without effects, as of a data sheet, gets the form that is
-    /// nearer to the campaign: statics or dynamics. This is said, and for every other model if its form is the wrong one.
+    /// nearer to the campaign: statics or dynamics. A note states it. Any other model in the wrong form gets a warning.
     ///
     /// # Errors
     /// If the model or the campaign is invalid.

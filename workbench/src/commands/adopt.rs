@@ -4,12 +4,11 @@ use std::path::PathBuf;
 
 use hitch_identification::constants::parameter::parameters;
 use hitch_identification::data::experiment::Experiment;
-use hitch_identification::estimate::Estimate;
 use hitch_identification::search::subset::{Accuracy, Options};
 use hitch_plant::Model;
 
 use crate::error::Error;
-use crate::explanation::{Found, rebuilt};
+use crate::explanation::{Found, saving};
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
@@ -59,15 +58,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let outputs = Outputs::check(wanted, &inputs)?;
     check_held(&args.hold, &args.model.load()?)?;
     let (model, campaign) = args.model.load_for(&args.campaign)?;
-    let base = model.clone();
-    let name = output::stem(&args.out);
-    let improved = |estimate: &Estimate| {
-        if !output::is_stdout(&args.out) {
-            let partial = rebuilt(&base, estimate, name.clone());
-            // A fault is reported by the last write.
-            let _ = output::write_file(&args.out, hitch_model_file::to_toml(&partial).as_bytes());
-        }
-    };
+    let improved = saving(&model, Some(&args.out));
     let options = Options {
         constants: Accuracy::DataSheet,
         exact: &args.hold,
@@ -75,7 +66,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     };
     let experiment = Experiment::new(&campaign, &model);
     let found = Found::new(experiment, model, options, &improved);
-    let adopted = found.rebuilt(name.clone());
+    let adopted = found.rebuilt(output::stem(&args.out));
     output::write_file(&args.out, hitch_model_file::to_toml(&adopted).as_bytes())?;
     if let Some(path) = &args.report {
         output::write_file(path, explanation_page::page(&found).as_bytes())?;

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
-use hitch_identification::estimate::Estimate;
 
 use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
-use crate::explanation::{Found, Since, rebuilt};
+use crate::explanation::{Found, Since, saving};
 use crate::model_arg::ModelArg;
 use crate::next_command;
 use crate::output::{self, JsonArg};
@@ -118,16 +117,7 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
         }
         None => args.model.load_for(folder)?,
     };
-    // The best result so far is on disk if the search is interrupted.
-    let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
-    let base = model.clone();
-    let improved = |estimate: &Estimate| {
-        if let Some(path) = out {
-            let partial = rebuilt(&base, estimate, output::stem(path));
-            // A fault is reported by the last write.
-            let _ = output::write_file(path, hitch_model_file::to_toml(&partial).as_bytes());
-        }
-    };
+    let improved = saving(&model, args.out.as_deref());
     let options = args.search.options();
     let (experiment, options) = match &since {
         Some(since) => since.posed(&campaign, options),
@@ -144,6 +134,7 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
         output::write_file(path, explanation_page::page(&found).as_bytes())?;
     }
     outputs.tell(&args.json, &found.shown, || {
+        let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
         let next = next_command::after_explanation(out, folder, &args.model);
         format!("{}\n{next}", found.shown)
     })

@@ -16,7 +16,7 @@ pub use found::{Explained, Found};
 pub use next::{Detail, Next};
 pub use of_diagnosis::explained;
 pub use of_explanation::parameters;
-pub use rebuilt::rebuilt;
+pub use rebuilt::{rebuilt, saving};
 pub use since::Since;
 
 use indexmap::IndexMap;

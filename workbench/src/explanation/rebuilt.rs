@@ -1,7 +1,11 @@
 //! A model with the estimated effects, as written to a file.
 
+use std::path::Path;
+
 use hitch_identification::estimate::Estimate;
 use hitch_plant::Model;
+
+use crate::output;
 
 /// Significant digits of an estimate in a model file; estimates are never more accurate.
 const DIGITS: usize = 6;
@@ -19,6 +23,19 @@ pub fn rebuilt(model: &Model, estimate: &Estimate, name: String) -> Model {
     let mut rebuilt = estimate.applied_to(model).with_effects(effects.collect());
     rebuilt.name = name;
     rebuilt
+}
+
+/// Writes each better estimate of a search as a model to a file, so that the best result so far is on disk if the search is
+/// interrupted. Nothing is written without a file, or to standard output.
+pub fn saving<'a>(base: &Model, out: Option<&'a Path>) -> impl Fn(&Estimate) + Sync + use<'a> {
+    let (base, out) = (base.clone(), out.filter(|path| !output::is_stdout(path)));
+    move |estimate| {
+        if let Some(path) = out {
+            let partial = rebuilt(&base, estimate, output::stem(path));
+            // A fault is reported by the last write.
+            let _ = output::write_file(path, hitch_model_file::to_toml(&partial).as_bytes());
+        }
+    }
 }
 
 fn rounded(value: f64) -> f64 {
