@@ -19,7 +19,7 @@ struct Layers {
 }
 
 /// The checked crates; add an entry for a new one.
-const CRATES: [Layers; 8] = [
+const CRATES: [Layers; 9] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -68,6 +68,15 @@ const CRATES: [Layers; 8] = [
             &["expression"],
             &["described", "catalogue"],
             &["term_effect"],
+        ],
+    },
+    Layers {
+        sources: "model/field/src",
+        order: &[
+            &["noise"],
+            &["draft", "strength"],
+            &["soil", "implement", "terrain", "tyre", "body", "sensors"],
+            &["tractor"],
         ],
     },
     Layers {

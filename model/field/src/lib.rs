@@ -1,0 +1,10 @@
+//! What a hitch works against in the field, in SI units: the soil and the implement's way into it.
+//!
+//! Depends on no other crate of the project.
+#![forbid(unsafe_code)]
+
+pub mod draft;
+pub mod implement;
+pub mod noise;
+pub mod soil;
+pub mod strength;
