@@ -1,8 +1,11 @@
 //! Tests of the field against closed forms and published figures. Draws have fixed seeds.
 
+mod body;
 mod draft;
 mod implement;
 mod strength;
+mod terrain;
+mod tyre;
 
 use proptest::test_runner::{Config, RngSeed};
 
