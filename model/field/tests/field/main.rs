@@ -3,8 +3,10 @@
 mod body;
 mod draft;
 mod implement;
+mod sensors;
 mod strength;
 mod terrain;
+mod tractor;
 mod tyre;
 
 use proptest::test_runner::{Config, RngSeed};
