@@ -16,6 +16,7 @@ use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
 use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, largest_current_a, survey};
 
+pub mod carried;
 mod dynamics;
 
 /// Tolerance of a valve table relative to the surveyed curve, A.
