@@ -114,6 +114,7 @@ const CRATES: [Layers; 9] = [
             &[
                 "interruption",
                 "model_arg",
+                "baseline_arg",
                 "effect_arg",
                 "search_args",
                 "input_stream",

@@ -1,4 +1,5 @@
 //! Results of `hitch explain` and `hitch diagnose`, as JSON and as text.
+mod base;
 mod channel_figures;
 mod corrected;
 mod found;
@@ -10,6 +11,7 @@ mod rebuilt;
 mod show;
 mod since;
 
+pub use base::{Base, Posed};
 pub use channel_figures::ChannelFigures;
 pub use corrected::Corrected;
 pub use found::{Explained, Found};

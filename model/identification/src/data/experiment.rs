@@ -95,6 +95,13 @@ pub struct Experiment {
 }
 
 impl Experiment {
+    /// Whether what the model leaves on a baseline has been subtracted. Its constants are then as they were on the baseline.
+    #[must_use]
+    pub fn is_beside_baseline(&self) -> bool {
+        let mut widened = self.runs.iter().flat_map(|run| &run.widened);
+        widened.any(|samples| !samples.is_empty())
+    }
+
     /// Prepares a campaign; `model` defines the valves' thresholds and the ends of the stroke.
     #[must_use]
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
