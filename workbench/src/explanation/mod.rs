@@ -37,6 +37,9 @@ pub struct Explanation {
     pub corrected_constants: Option<Corrected>,
     /// The effects added or changed, in order.
     pub steps: Vec<Step>,
+    /// Effects that reduce the error and are not named, because their probability is below one half; `error_after` is the error
+    /// with them.
+    pub doubtful: Vec<Step>,
     /// The remaining error.
     pub unexplained: Unexplained,
     /// Effects that are not detectable at their typical size, in ascending order of detectability; empty if an error
