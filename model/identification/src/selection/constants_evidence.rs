@@ -29,14 +29,17 @@ struct FreedConstants {
     explained_share: f64,
 }
 
-/// Covariance of the constants of a fit, in units of the prior's; residuals beyond noise widen it. `None` if they are
-/// not free, or the covariance is singular.
+/// Mean square error of the constants of a fit, in units of the prior's: their covariance, which residuals beyond noise widen,
+/// and the step that the slope of the cost still asks for. A hitch that comes to its stop just so, or not, is a step of the
+/// cost, at which a descent may end before its minimum. `None` if they are not free, or the covariance is singular.
 pub(crate) fn covariance(problem: Problem<'_>, fit: &Fit) -> Option<DMatrix<f64>> {
     fit.estimate.constants.as_ref()?;
     let unit = Penalty::given(problem.experiment, fit).unit;
-    let (precision, _) = Sensitivities::at(problem, fit).normal_equations();
+    let (precision, pull) = Sensitivities::at(problem, fit).normal_equations();
+    let root = precision.cholesky()?;
+    let step = root.solve(&pull);
     // The prior of the fit is narrower by the unit: see `shares`.
-    Some(precision.cholesky()?.inverse() * unit)
+    Some(root.inverse() * unit + &step * step.transpose())
 }
 
 impl FreedConstants {
