@@ -35,6 +35,7 @@ pub struct Currents {
 
 impl Currents {
     /// Applies a function to both currents.
+    #[inline(always)]
     #[must_use]
     pub fn map(self, mut change: impl FnMut(Valve, f64) -> f64) -> Self {
         Self {
@@ -44,6 +45,7 @@ impl Currents {
     }
 
     /// Linear interpolation between these currents and others.
+    #[inline(always)]
     #[must_use]
     pub fn towards(self, to: Self, share: f64) -> Self {
         Self {
@@ -53,6 +55,7 @@ impl Currents {
     }
 
     /// Largest difference of a current, A.
+    #[inline(always)]
     #[must_use]
     pub fn largest_difference_a(self, other: Self) -> f64 {
         let lift_a = (self.lift_a - other.lift_a).abs();
@@ -111,12 +114,14 @@ pub struct Line {
 
 impl Line {
     /// Whether it has no resistance.
+    #[inline(always)]
     #[must_use]
     pub fn is_free(&self) -> bool {
         *self == Self::default()
     }
 
     /// Pressure drop, Pa, at a flow, m3/s.
+    #[inline(always)]
     #[must_use]
     pub fn pressure_pa(&self, flow_m3_s: f64) -> f64 {
         (self.laminar_pa_s_m3 + self.turbulent_pa_s2_m6 * flow_m3_s) * flow_m3_s
@@ -124,6 +129,7 @@ impl Line {
 
     /// Flow through an orifice in series with it, m3/s, at a pressure, Pa, that would drive `free_m3_s` through the
     /// orifice alone: the root of `p = (p / Q_free^2 + turbulent) Q^2 + laminar Q`.
+    #[inline(always)]
     #[must_use]
     pub fn behind_orifice_m3_s(&self, free_m3_s: f64, pressure_pa: f64) -> f64 {
         let narrower = 1.0 + self.turbulent_pa_s2_m6 * free_m3_s * free_m3_s / pressure_pa;
@@ -152,6 +158,7 @@ impl Default for FlowFactor {
 
 impl FlowFactor {
     /// The factor at a tabulated flow; the largest tabulated flow is `largest`.
+    #[inline(always)]
     #[must_use]
     pub fn at(&self, flow: f64, largest: f64) -> f64 {
         if self.growth == 0.0 || largest <= 0.0 {
@@ -177,6 +184,7 @@ pub struct Ground {
 
 impl Ground {
     /// Force on the hitch point, N, upwards, at its height, m, and speed, m/s.
+    #[inline(always)]
     #[must_use]
     pub fn force_n(&self, height_m: f64, speed_m_s: f64) -> f64 {
         let depth_m = self.height_m - height_m;
@@ -204,6 +212,7 @@ pub struct Bristles {
 impl Bristles {
     /// Deflection of the bristles, m, after the piston moved by `moved_m`: `z' = v - (|v| + creep) z / reach`, exact
     /// for a constant speed.
+    #[inline(always)]
     #[must_use]
     pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
         let share = (moved_m.abs() + self.creep_m_s * dt_s) / self.reach_m;
@@ -339,11 +348,36 @@ impl Default for EffectHooks {
     }
 }
 
+/// Sum of an empty list: negative zero, which changes no number that it is added to.
+const NONE: f64 = -0.0;
+
+/// Sum of laws. The empty sum is inlined: most plants have few effects, and this is in the innermost loop.
+#[inline(always)]
 fn sum(laws: &[Law], of: f64) -> f64 {
+    match laws.is_empty() {
+        true => NONE,
+        false => sum_of_some(laws, of),
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn sum_of_some(laws: &[Law], of: f64) -> f64 {
     laws.iter().map(|law| law(of)).sum()
 }
 
+/// Product of laws.
+#[inline(always)]
 fn product(laws: &[Law], of: f64) -> f64 {
+    match laws.is_empty() {
+        true => 1.0,
+        false => product_of_some(laws, of),
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn product_of_some(laws: &[Law], of: f64) -> f64 {
     laws.iter().map(|law| law(of)).product()
 }
 
@@ -375,13 +409,25 @@ impl EffectHooks {
     }
 
     /// Sum of the friction forces, N, in a state with a weight's force, N.
+    #[inline(always)]
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
+        match self.friction.is_empty() {
+            true => NONE,
+            false => self.some_friction_n(*state, weight_n),
+        }
+    }
+
+    /// The state is passed by value, so that without friction the solver need not keep it in memory.
+    #[cold]
+    #[inline(never)]
+    fn some_friction_n(&self, state: MechanicalState, weight_n: f64) -> f64 {
         let forces = self.friction.iter();
-        forces.map(|force| force(state, weight_n)).sum()
+        forces.map(|force| force(&state, weight_n)).sum()
     }
 
     /// Force of the bristles, N, at a deflection, m.
+    #[inline(always)]
     #[must_use]
     pub fn bristles_n(&self, bent_m: f64) -> f64 {
         self.bristles
@@ -389,6 +435,7 @@ impl EffectHooks {
     }
 
     /// [`Bristles::bent_m`]; zero without bristles.
+    #[inline(always)]
     #[must_use]
     pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
         self.bristles
@@ -396,19 +443,31 @@ impl EffectHooks {
     }
 
     /// Factor on the weight's force at a piston travel, m, with the load's share in the weight.
+    #[inline(always)]
     #[must_use]
-    pub fn weight_factor(&self, piston_m: f64, load_share: f64) -> f64 {
+    pub fn weight_factor(&self, piston_m: f64, load_share: impl FnOnce() -> f64) -> f64 {
+        match self.weight_factor.is_empty() {
+            true => 1.0,
+            false => self.some_weight_factor(piston_m, load_share()),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn some_weight_factor(&self, piston_m: f64, load_share: f64) -> f64 {
         let factors = self.weight_factor.iter();
         factors.map(|factor| factor(piston_m, load_share)).product()
     }
 
     /// Pressure downstream of the lowering valve, Pa, at a flow through it, m3/s.
+    #[inline(always)]
     #[must_use]
     pub fn return_pressure_pa(&self, flow_m3_s: f64) -> f64 {
         self.return_line.pressure_pa(flow_m3_s)
     }
 
     /// Whether a hitch at rest with both valves closed stays at rest.
+    #[inline(always)]
     #[must_use]
     pub fn stays_at_rest(&self) -> bool {
         let straighten = |bristles: Bristles| bristles.creep_m_s > 0.0;
@@ -416,36 +475,42 @@ impl EffectHooks {
     }
 
     /// Sum of the leakage flows, m3/s, at a cylinder pressure, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn leakage_m3_s(&self, cylinder_pressure_pa: f64) -> f64 {
         sum(&self.leakage, cylinder_pressure_pa)
     }
 
     /// Factor on the lowering valve's flow at its pressure drop, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn lower_drop_factor(&self, drop_pa: f64) -> f64 {
         product(&self.lower_drop_factor, drop_pa)
     }
 
     /// Factor on the travel of the lowering spool beyond its opening point, at the valve's pressure drop, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn lower_travel_factor(&self, drop_pa: f64) -> f64 {
         product(&self.lower_travel_factor, drop_pa)
     }
 
     /// Sum of the additions to the compensator's margin, Pa, at a cylinder pressure, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn margin_pa(&self, cylinder_pressure_pa: f64) -> f64 {
         sum(&self.margin, cylinder_pressure_pa)
     }
 
     /// Pump flow lost to slip, m3/s, at a pump pressure, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn pump_slip_m3_s(&self, pump_pressure_pa: f64) -> f64 {
         sum(&self.pump_slip, pump_pressure_pa)
     }
 
     /// Factor on the oil's bulk modulus at a cylinder pressure, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn stiffness_factor(&self, cylinder_pressure_pa: f64) -> f64 {
         product(&self.stiffness_factor, cylinder_pressure_pa)

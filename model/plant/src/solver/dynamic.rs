@@ -130,6 +130,7 @@ fn derivative(
 }
 
 /// Pressure increase per volume of oil, Pa/m3: reciprocal of `V/E(p) + C`, oil and hoses.
+#[inline(always)]
 fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
     let constants = circuit.constants;
     let modulus_pa = constants.oil.bulk_modulus_pa * circuit.hooks.stiffness_factor(pressure_pa);
@@ -138,11 +139,13 @@ fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
 }
 
 /// Stiffness of the oil alone, without air and hoses, Pa/m3: conversion of a void into a pressure.
+#[inline(always)]
 fn oil_stiffness_pa_m3(constants: &Constants, piston_m: f64) -> f64 {
     constants.oil.bulk_modulus_pa / constants.cylinder.volume_m3(piston_m.max(0.0))
 }
 
 /// The state with its void represented by a pressure below the vacuum.
+#[inline(always)]
 fn stretched(model: &Model, state: &MechanicalState) -> MechanicalState {
     if state.void_m3 == 0.0 {
         return *state;
@@ -156,6 +159,7 @@ fn stretched(model: &Model, state: &MechanicalState) -> MechanicalState {
 }
 
 /// The state with a pressure below the vacuum represented by a void.
+#[inline(always)]
 fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
     let missing_pa = VACUUM_PA - state.pressure_pa;
     if missing_pa <= 0.0 {
@@ -172,6 +176,7 @@ fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
 }
 
 /// The state with a piston beyond a stop put back to it, at rest; the oil is compressed or expanded accordingly.
+#[inline(always)]
 fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
     let cylinder = &circuit.constants.cylinder;
     let piston_m = state.piston_m.clamp(0.0, cylinder.stroke_m);
@@ -188,6 +193,7 @@ fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
     }
 }
 
+#[inline(always)]
 fn moved(state: &MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState {
     MechanicalState {
         piston_m: state.piston_m + dt_s * rate[0],
@@ -202,6 +208,7 @@ fn moved(state: &MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalStat
 /// Rate at which the orifices settle the pressure within a step, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each
 /// orifice whose drop depends on the cylinder pressure. The flow is proportional to the square root of the drop, so the
 /// rate increases as the drop decreases: the drop at the end of the step is used.
+#[inline(always)]
 fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState, dt_s: f64) -> f64 {
     let constants = circuit.constants;
     let flows = circuit.solve(openings, state);
@@ -249,6 +256,7 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
 }
 
 /// Settling rate of a hose's creeping wall and of the pressure with it, 1/s.
+#[inline(always)]
 fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
     let hose = &circuit.hooks.hose;
     if hose.creeping_m3_pa == 0.0 {
@@ -259,6 +267,7 @@ fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
 }
 
 /// Settling rate of a lagging compensator, 1/s.
+#[inline(always)]
 fn lagging_rate(circuit: &Circuit) -> f64 {
     match circuit.hooks.compensator_lag_s {
         0.0 => 0.0,
@@ -347,6 +356,7 @@ pub fn step(
 }
 
 /// Openings at a share of the step, interpolated linearly between start, middle and end.
+#[inline(always)]
 fn between(openings: &[Openings; 3], share: f64) -> Openings {
     let (from, to, part) = if share <= 0.5 {
         (openings[0], openings[1], 2.0 * share)

@@ -1,6 +1,6 @@
 //! The forces on the piston other than the oil pressure, including those of effects.
 
-use crate::hooks::effect_hooks::EffectHooks;
+use crate::hooks::effect_hooks::{EffectHooks, Ground};
 use crate::hooks::place::Place;
 use crate::model::Model;
 use crate::solver::moment::Moment;
@@ -25,6 +25,7 @@ pub struct Forces<'a> {
 impl Forces<'_> {
     /// Static force of load and dead weight, N, downwards, at piston travel `piston_m`, all else as in the previous
     /// step.
+    #[inline(always)]
     #[must_use]
     pub fn weight_n(&self, piston_m: f64) -> f64 {
         let dh_dx = self.model.linkage().dh_dx(piston_m);
@@ -32,10 +33,11 @@ impl Forces<'_> {
     }
 
     /// Static force of load and dead weight, N, downwards, in a state where the linkage has the transmission `dh_dx`.
+    #[inline(always)]
     #[must_use]
     pub fn weight_at_n(&self, dh_dx: f64, state: &MechanicalState) -> f64 {
         let masses = &self.model.constants().masses;
-        let load_share = masses.load_share(self.rig.load_kg);
+        let load_share = || masses.load_share(self.rig.load_kg);
         let factor = self.hooks.weight_factor(state.piston_m, load_share);
         masses.weight_force_n(self.rig.load_kg, dh_dx) * factor
             + self.moment.term(Place::Weight, state, |_| ())
@@ -43,12 +45,19 @@ impl Forces<'_> {
 
     /// Additional inertia of the rocker shaft at the piston, kg, and half its derivative over piston travel, kg/m:
     /// `J (dphi/dx)^2`.
+    #[inline(always)]
     #[must_use]
     pub fn shaft_inertia_kg(&self, piston_m: f64) -> (f64, f64) {
         let inertia_kg_m2 = self.hooks.shaft_inertia_kg_m2;
-        if inertia_kg_m2 == 0.0 {
-            return (0.0, 0.0);
+        match inertia_kg_m2 == 0.0 {
+            true => (0.0, 0.0),
+            false => self.some_shaft_inertia_kg(inertia_kg_m2, piston_m),
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn some_shaft_inertia_kg(&self, inertia_kg_m2: f64, piston_m: f64) -> (f64, f64) {
         let (turn_rad_m, bend_rad_m2) = self.model.linkage().shaft_transmission(piston_m);
         (
             inertia_kg_m2 * turn_rad_m * turn_rad_m,
@@ -57,6 +66,7 @@ impl Forces<'_> {
     }
 
     /// A state at a piston travel, with speed and pressure of the previous step.
+    #[inline(always)]
     #[must_use]
     pub fn before(&self, piston_m: f64) -> MechanicalState {
         MechanicalState {
@@ -68,16 +78,24 @@ impl Forces<'_> {
     }
 
     /// Force of the ground under the hitch, N, upwards, at a piston travel, m, and speed, m/s.
+    #[inline(always)]
     #[must_use]
     pub fn ground_n(&self, piston_m: f64, speed_m_s: f64) -> f64 {
-        let Some(ground) = &self.hooks.ground else {
-            return 0.0;
-        };
+        match &self.hooks.ground {
+            Some(ground) => self.ground_contact_n(ground, piston_m, speed_m_s),
+            None => 0.0,
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn ground_contact_n(&self, ground: &Ground, piston_m: f64, speed_m_s: f64) -> f64 {
         let posture = self.model.linkage().at(piston_m);
         ground.force_n(posture.height_m, speed_m_s * posture.dh_dx) * posture.dh_dx
     }
 
     /// Friction against the motion, N, in a state with a weight's force, N.
+    #[inline(always)]
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
         self.hooks.friction_n(state, weight_n)

@@ -54,21 +54,22 @@ impl Moment<'_> {
         if self.hooks.terms.is_empty() {
             return 0.0;
         }
-        self.present_term(place, state, refine)
+        self.present_term(place, *state, refine)
     }
 
+    /// The state is passed by value, so that without terms the solver need not keep it in memory.
     #[cold]
     #[inline(never)]
     fn present_term(
         &self,
         place: Place,
-        state: &MechanicalState,
+        state: MechanicalState,
         refine: impl FnOnce(&mut Signals),
     ) -> f64 {
         if !self.hooks.has_term(place) {
             return 0.0;
         }
-        let mut signals = self.signals(state);
+        let mut signals = self.signals(&state);
         refine(&mut signals);
         self.hooks.term(place, &signals)
     }
@@ -86,8 +87,9 @@ impl Moment<'_> {
             signals.travel_m = state.piston_m;
             signals.speed_m_s = state.speed_m_s;
             signals.rocker_angle_rad = posture.rocker_angle_rad;
-            let load_share = masses.load_share(signals.load_kg);
-            signals.weight_n = masses.weight_force_n(signals.load_kg, posture.dh_dx)
+            let load_kg = signals.load_kg;
+            let load_share = || masses.load_share(load_kg);
+            signals.weight_n = masses.weight_force_n(load_kg, posture.dh_dx)
                 * self.hooks.weight_factor(state.piston_m, load_share);
         }
         signals
