@@ -113,11 +113,17 @@ pub struct Line {
 }
 
 impl Line {
+    /// A line without resistance.
+    pub const FREE: Self = Self {
+        turbulent_pa_s2_m6: 0.0,
+        laminar_pa_s_m3: 0.0,
+    };
+
     /// Whether it has no resistance.
     #[inline(always)]
     #[must_use]
     pub fn is_free(&self) -> bool {
-        *self == Self::default()
+        *self == Self::FREE
     }
 
     /// Pressure drop, Pa, at a flow, m3/s.
@@ -149,14 +155,17 @@ pub struct FlowFactor {
 
 impl Default for FlowFactor {
     fn default() -> Self {
-        Self {
-            at_half: 1.0,
-            growth: 0.0,
-        }
+        Self::ONE
     }
 }
 
 impl FlowFactor {
+    /// No change of the flow.
+    pub const ONE: Self = Self {
+        at_half: 1.0,
+        growth: 0.0,
+    };
+
     /// The factor at a tabulated flow; the largest tabulated flow is `largest`.
     #[inline(always)]
     #[must_use]
@@ -237,11 +246,31 @@ pub struct Hose {
 }
 
 impl Hose {
+    /// A hose that does not expand.
+    pub const STIFF: Self = Self {
+        at_once_m3_pa: 0.0,
+        creeping_m3_pa: 0.0,
+        catching_up_1_s: 0.0,
+    };
+
     /// Flow, m3/s, into its creeping wall, which lags behind the pressure by `behind_pa`.
     #[inline(always)]
     #[must_use]
     pub fn creep_m3_s(&self, behind_pa: f64) -> f64 {
-        self.creeping_m3_pa * self.catching_up_1_s * behind_pa
+        match self.creeping_m3_pa == 0.0 {
+            true => 0.0,
+            false => self.creeping_m3_pa * self.catching_up_1_s * behind_pa,
+        }
+    }
+
+    /// Rate of the lag of its wall behind the pressure, Pa/s, at a rate of the pressure, Pa/s.
+    #[inline(always)]
+    #[must_use]
+    pub fn behind_pa_s(&self, pressure_pa_s: f64, behind_pa: f64) -> f64 {
+        match self.catching_up_1_s == 0.0 {
+            true => pressure_pa_s,
+            false => pressure_pa_s - self.catching_up_1_s * behind_pa,
+        }
     }
 }
 
@@ -312,39 +341,44 @@ pub struct EffectHooks {
     pub terms: Vec<(Place, TermFunction)>,
 }
 
+impl EffectHooks {
+    /// Hooks without any effect.
+    pub const NONE: Self = Self {
+        currents: Vec::new(),
+        lift_flow_factor: FlowFactor::ONE,
+        lower_flow_factor: FlowFactor::ONE,
+        lower_drop_factor: Vec::new(),
+        lower_travel_factor: Vec::new(),
+        flow_number_1_a_sqrt_pa: None,
+        margin: Vec::new(),
+        idle_extra_pa: 0.0,
+        spool_lag_extra_s: 0.0,
+        margin_lost_to_flow_pa_s_m3: 0.0,
+        compensator_lag_s: 0.0,
+        cracking_extra_pa: 0.0,
+        check_valve: Line::FREE,
+        pump_slip: Vec::new(),
+        relief: None,
+        return_line: Line::FREE,
+        leakage: Vec::new(),
+        stiffness_factor: Vec::new(),
+        hose: Hose::STIFF,
+        friction: Vec::new(),
+        bristles: None,
+        weight_factor: Vec::new(),
+        inertia_share: 0.0,
+        shaft_inertia_kg_m2: 0.0,
+        longest_step_s: f64::INFINITY,
+        largest_change_a: f64::INFINITY,
+        ground: None,
+        sensors: Vec::new(),
+        terms: Vec::new(),
+    };
+}
+
 impl Default for EffectHooks {
     fn default() -> Self {
-        Self {
-            currents: Vec::new(),
-            lift_flow_factor: FlowFactor::default(),
-            lower_flow_factor: FlowFactor::default(),
-            lower_drop_factor: Vec::new(),
-            lower_travel_factor: Vec::new(),
-            flow_number_1_a_sqrt_pa: None,
-            margin: Vec::new(),
-            idle_extra_pa: 0.0,
-            spool_lag_extra_s: 0.0,
-            margin_lost_to_flow_pa_s_m3: 0.0,
-            compensator_lag_s: 0.0,
-            cracking_extra_pa: 0.0,
-            check_valve: Line::default(),
-            pump_slip: Vec::new(),
-            relief: None,
-            return_line: Line::default(),
-            leakage: Vec::new(),
-            stiffness_factor: Vec::new(),
-            hose: Hose::default(),
-            friction: Vec::new(),
-            bristles: None,
-            weight_factor: Vec::new(),
-            inertia_share: 0.0,
-            shaft_inertia_kg_m2: 0.0,
-            longest_step_s: f64::INFINITY,
-            largest_change_a: f64::INFINITY,
-            ground: None,
-            sensors: Vec::new(),
-            terms: Vec::new(),
-        }
+        Self::NONE
     }
 }
 

@@ -1,5 +1,6 @@
 //! The hooks where physical effects act, and the signals and readings of the plant.
 
+pub mod acting;
 pub mod effect;
 pub mod effect_hooks;
 pub mod place;

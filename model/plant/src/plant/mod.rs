@@ -7,6 +7,7 @@ mod rest;
 
 use crate::components::lag::Lag;
 use crate::constants::Dynamics;
+use crate::hooks::acting::{Acting, EVERY, kinds, with_kinds};
 use crate::hooks::effect::AddedEffect;
 use crate::hooks::effect_hooks::{Currents, EffectHooks, RunConditions};
 use crate::hooks::place::Place;
@@ -29,6 +30,8 @@ pub struct Plant<'m> {
     rig: Rig,
     steps: Steps,
     hooks: EffectHooks,
+    /// Kinds of effects among the hooks.
+    kinds: u8,
     spools: [Lag; 2],
     spool_currents: Currents,
     /// Rate of change of the spools' currents over the last step, A/s.
@@ -61,6 +64,7 @@ impl<'m> Plant<'m> {
             model,
             rig,
             steps: Steps::FINE,
+            kinds: kinds(&hooks),
             hooks,
             spools,
             spool_currents: effective,
@@ -202,27 +206,40 @@ impl<'m> Plant<'m> {
         self.circuit().idle_pressure_pa()
     }
 
-    fn circuit(&self) -> Circuit<'_> {
+    /// The circuit with effects of any kind.
+    fn circuit(&self) -> Circuit<'_, EVERY> {
+        self.circuit_with()
+    }
+
+    /// The forces with effects of any kind.
+    fn forces<'a>(&'a self, rig: &'a HitchRig) -> Forces<'a, EVERY> {
+        self.forces_with(rig)
+    }
+
+    #[inline(always)]
+    fn circuit_with<const KINDS: u8>(&self) -> Circuit<'_, KINDS> {
         Circuit {
             constants: self.model.constants(),
-            hooks: &self.hooks,
+            hooks: Acting::only(&self.hooks),
             moment: self.moment(),
         }
     }
 
-    fn forces<'a>(&'a self, rig: &'a HitchRig) -> Forces<'a> {
+    #[inline(always)]
+    fn forces_with<'a, const KINDS: u8>(&'a self, rig: &'a HitchRig) -> Forces<'a, KINDS> {
         Forces {
             model: self.model,
-            hooks: &self.hooks,
+            hooks: Acting::only(&self.hooks),
             rig,
             moment: self.moment(),
         }
     }
 
-    fn moment(&self) -> Moment<'_> {
+    #[inline(always)]
+    fn moment<const KINDS: u8>(&self) -> Moment<'_, KINDS> {
         Moment {
             model: self.model,
-            hooks: &self.hooks,
+            hooks: Acting::only(&self.hooks),
             before: &self.signals,
         }
     }
@@ -266,9 +283,10 @@ impl<'m> Plant<'m> {
                     speed_m_s: self.state.speed_m_s,
                     dt_s,
                 };
-                let (forces, circuit) = (self.forces(&rig), self.circuit());
-                let piston_m =
-                    steady::step(&forces, &circuit, self.state, end, self.lowest_m, dt_s);
+                let piston_m = with_kinds!(self.kinds, KINDS => {
+                    let (forces, circuit) = (self.forces_with::<KINDS>(&rig), self.circuit_with());
+                    steady::step(&forces, &circuit, self.state, end, self.lowest_m, dt_s)
+                });
                 let moved_m = piston_m - self.state.piston_m;
                 self.state.bristles_m = self.hooks.bent_m(self.state.bristles_m, moved_m, dt_s);
                 self.state.piston_m = piston_m;
@@ -282,11 +300,13 @@ impl<'m> Plant<'m> {
                 let half = self.open(from, middle, 0.5 * dt_s);
                 let end = self.open(middle, currents, 0.5 * dt_s);
                 let openings = [start, half, end];
-                let (forces, circuit) = (self.forces(&rig), self.circuit());
-                if dynamic::rests(&forces, &circuit, &self.state, &openings) {
-                    return;
-                }
-                self.state = dynamic::step(&forces, &circuit, &self.state, &openings, dt_s);
+                self.state = with_kinds!(self.kinds, KINDS => {
+                    let (forces, circuit) = (self.forces_with::<KINDS>(&rig), self.circuit_with());
+                    if dynamic::rests(&forces, &circuit, &self.state, &openings) {
+                        return;
+                    }
+                    dynamic::step(&forces, &circuit, &self.state, &openings, dt_s)
+                });
             }
         }
         if !self.hooks.terms.is_empty() {
@@ -352,7 +372,7 @@ impl<'m> Plant<'m> {
         if self.hooks.terms.is_empty() {
             return;
         }
-        let now = self.moment().signals(&self.state);
+        let now = self.moment::<EVERY>().signals(&self.state);
         self.signals = Signals {
             pump_pressure_pa: self.flows.pump_pressure_pa,
             lift_flow_m3_s: self.flows.lift_m3_s,
@@ -363,8 +383,10 @@ impl<'m> Plant<'m> {
 
     /// Updates the quasi-static speed, pressure and flows at the present openings and travel.
     fn balance(&mut self, rig: &HitchRig, before: Option<steady::Before>) {
-        let (forces, circuit) = (self.forces(rig), self.circuit());
-        let balance = steady::balance(&forces, &circuit, self.openings, self.state, before);
+        let balance = with_kinds!(self.kinds, KINDS => {
+            let (forces, circuit) = (self.forces_with::<KINDS>(rig), self.circuit_with());
+            steady::balance(&forces, &circuit, self.openings, self.state, before)
+        });
         self.state.speed_m_s = balance.speed_m_s;
         self.state.pressure_pa = balance.pressure_pa;
         self.flows = balance.flows;

@@ -4,7 +4,8 @@ use crate::components::orifice_valve::OrificeValve;
 use crate::components::pump::PumpKind;
 use crate::components::valve_curve::ValveCurve;
 use crate::constants::Constants;
-use crate::hooks::effect_hooks::{EffectHooks, FlowFactor, Line, ReliefOverride};
+use crate::hooks::acting::Acting;
+use crate::hooks::effect_hooks::{FlowFactor, Line, ReliefOverride};
 use crate::hooks::place::Place;
 use crate::solver::moment::Moment;
 use crate::state::MechanicalState;
@@ -115,19 +116,19 @@ impl Flows {
 }
 
 /// The circuit between pump, tank and cylinder port.
-pub struct Circuit<'a> {
+pub struct Circuit<'a, const KINDS: u8> {
     /// The components.
     pub constants: &'a Constants,
     /// The attached effects.
-    pub hooks: &'a EffectHooks,
+    pub hooks: Acting<'a, KINDS>,
     /// The signals for terms.
-    pub moment: Moment<'a>,
+    pub moment: Moment<'a, KINDS>,
 }
 
 /// Largest factor of terms on a valve's flow.
 const GREATEST_FACTOR: f64 = 10.0;
 
-impl Circuit<'_> {
+impl<const KINDS: u8> Circuit<'_, KINDS> {
     /// Openings of the valves at effective currents, A.
     #[inline(always)]
     #[must_use]
@@ -149,20 +150,21 @@ impl Circuit<'_> {
             ..
         } = self.constants;
         Openings {
-            lift: opening(lift_valve, lift_a, self.hooks.lift_flow_factor),
-            lower: opening(lower_valve, lower_a, self.hooks.lower_flow_factor),
+            lift: opening(lift_valve, lift_a, self.hooks.all().lift_flow_factor),
+            lower: opening(lower_valve, lower_a, self.hooks.all().lower_flow_factor),
         }
     }
 
     #[inline(always)]
     fn depends_on_travel(&self) -> bool {
-        self.hooks.flow_number_1_a_sqrt_pa.is_some() || !self.hooks.lower_travel_factor.is_empty()
+        self.hooks.oil().flow_number_1_a_sqrt_pa.is_some()
+            || !self.hooks.oil().lower_travel_factor.is_empty()
     }
 
     /// The lowering valve's opening with the travel of its spool reduced by flow forces at a drop, Pa.
     #[inline(always)]
     fn travelled(&self, opening: Opening, drop_pa: f64) -> Opening {
-        match self.hooks.lower_travel_factor.is_empty() {
+        match self.hooks.oil().lower_travel_factor.is_empty() {
             true => opening,
             false => self.travelled_less(opening, drop_pa),
         }
@@ -173,7 +175,7 @@ impl Circuit<'_> {
     fn travelled_less(&self, opening: Opening, drop_pa: f64) -> Opening {
         let curve = &self.constants.lower_valve.curve;
         let flow_m3_s = |beyond_a: f64| curve.flow_m3_s(curve.threshold_a() + beyond_a);
-        let beyond_a = opening.beyond_threshold_a * self.hooks.lower_travel_factor(drop_pa);
+        let beyond_a = opening.beyond_threshold_a * self.hooks.oil().lower_travel_factor(drop_pa);
         let free_m3_s = flow_m3_s(opening.beyond_threshold_a);
         if free_m3_s <= 0.0 {
             return opening;
@@ -187,7 +189,7 @@ impl Circuit<'_> {
     /// Ratio of a valve's discharge coefficient to that of a wide opening: `tanh` of its flow number (McCloy & Martin).
     #[inline(always)]
     fn discharge(&self, opening: Opening, drop_pa: f64) -> f64 {
-        match self.hooks.flow_number_1_a_sqrt_pa {
+        match self.hooks.oil().flow_number_1_a_sqrt_pa {
             Some(flow_number) => {
                 (flow_number * opening.beyond_threshold_a * drop_pa.max(0.0).sqrt()).tanh()
             }
@@ -200,7 +202,7 @@ impl Circuit<'_> {
     #[must_use]
     pub fn solve(&self, openings: Openings, state: &MechanicalState) -> Flows {
         let (lift_m3_s, pump_pressure_pa) = self.lift(openings.lift, state);
-        let leakage_m3_s = self.hooks.leakage_m3_s(state.pressure_pa);
+        let leakage_m3_s = self.hooks.oil().leakage_m3_s(state.pressure_pa);
         Flows {
             lift_m3_s,
             lower_m3_s: self.lower_m3_s(openings.lower, state),
@@ -215,40 +217,46 @@ impl Circuit<'_> {
     pub fn lifting_pressure_pa(&self, state: &MechanicalState) -> f64 {
         let compensator = &self.constants.compensator;
         compensator.lifting_pressure_pa(state.pressure_pa)
-            + self.hooks.margin_pa(state.pressure_pa)
+            + self.hooks.supply().margin_pa(state.pressure_pa)
             + self.moment.term(Place::CompensatorMargin, state, |_| ())
     }
 
     /// The lift valve's opening with user-defined terms applied.
     #[inline(always)]
     fn lift_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
-        if self.hooks.terms.is_empty() {
+        if self.hooks.own().terms.is_empty() {
             return opening;
         }
-        let term = self.moment.term(Place::LiftFlowFactor, state, move |signals| {
-            signals.lift_flow_m3_s = opening.flow_m3_s;
-        });
+        let term = self
+            .moment
+            .term(Place::LiftFlowFactor, state, move |signals| {
+                signals.lift_flow_m3_s = opening.flow_m3_s;
+            });
         opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
     }
 
     /// The lowering valve's opening with user-defined terms applied.
     #[inline(always)]
     fn lower_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
-        if self.hooks.terms.is_empty() {
+        if self.hooks.own().terms.is_empty() {
             return opening;
         }
-        let term = self.moment.term(Place::LowerFlowFactor, state, move |signals| {
-            signals.lower_flow_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
-        });
+        let term = self
+            .moment
+            .term(Place::LowerFlowFactor, state, move |signals| {
+                signals.lower_flow_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
+            });
         opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
     }
 
     /// Pressure downstream of the lowering valve, Pa, at a flow through it, m3/s.
     fn return_pressure_pa(&self, flow_m3_s: f64, state: &MechanicalState) -> f64 {
-        let term = self.moment.term(Place::ReturnPressure, state, move |signals| {
-            signals.lower_flow_m3_s = flow_m3_s;
-        });
-        self.hooks.return_pressure_pa(flow_m3_s) + term
+        let term = self
+            .moment
+            .term(Place::ReturnPressure, state, move |signals| {
+                signals.lower_flow_m3_s = flow_m3_s;
+            });
+        self.hooks.oil().return_pressure_pa(flow_m3_s) + term
     }
 
     /// Drop across the lift orifice out of that from pump to cylinder, Pa.
@@ -256,7 +264,7 @@ impl Circuit<'_> {
     #[must_use]
     pub fn lift_drop_pa(&self, pump_pressure_pa: f64, cylinder_pressure_pa: f64) -> f64 {
         let check_valve = &self.constants.check_valve;
-        let load_pa = cylinder_pressure_pa + self.hooks.cracking_extra_pa;
+        let load_pa = cylinder_pressure_pa + self.hooks.supply().cracking_extra_pa;
         check_valve.remaining_drop_pa(pump_pressure_pa, load_pa)
     }
 
@@ -266,7 +274,7 @@ impl Circuit<'_> {
         let lift_valve = &self.constants.lift_valve;
         let flow_m3_s =
             lift_valve.flow_m3_s(opening.flow_m3_s, drop_pa) * self.discharge(opening, drop_pa);
-        let check_valve = &self.hooks.check_valve;
+        let check_valve = &self.hooks.supply().check_valve;
         if check_valve.is_free() || flow_m3_s == 0.0 {
             return flow_m3_s;
         }
@@ -283,7 +291,7 @@ impl Circuit<'_> {
         }
         let flow_at = self.lift_flow_at(opening, state);
         let pumped_m3_s = move |pump_pressure_pa: f64| {
-            constants.pump.flow_m3_s() - self.hooks.pump_slip_m3_s(pump_pressure_pa)
+            constants.pump.flow_m3_s() - self.hooks.supply().pump_slip_m3_s(pump_pressure_pa)
         };
         let flow_m3_s = flow_at(wanted_pa);
         if flow_m3_s <= pumped_m3_s(wanted_pa) {
@@ -292,8 +300,8 @@ impl Circuit<'_> {
         // The compensator is closed and does not reach its margin: the pump's full flow determines the drop (equation
         // 5).
         let drop_pa = self.lift_drop_pa(wanted_pa, state.pressure_pa);
-        let turbulent = self.hooks.flow_number_1_a_sqrt_pa.is_none();
-        let short_pa = if self.hooks.pump_slip.is_empty() && turbulent {
+        let turbulent = self.hooks.oil().flow_number_1_a_sqrt_pa.is_none();
+        let short_pa = if self.hooks.supply().pump_slip.is_empty() && turbulent {
             let ratio = pumped_m3_s(wanted_pa) / flow_m3_s;
             drop_pa * (1.0 - ratio * ratio)
         } else {
@@ -307,7 +315,11 @@ impl Circuit<'_> {
 
     /// Lift flow, m3/s, as a function of pump pressure, Pa.
     #[inline(always)]
-    fn lift_flow_at(&self, opening: Opening, state: &MechanicalState) -> impl Fn(f64) -> f64 + Copy {
+    fn lift_flow_at(
+        &self,
+        opening: Opening,
+        state: &MechanicalState,
+    ) -> impl Fn(f64) -> f64 + Copy {
         let opening = self.lift_opening(opening, state);
         let cylinder_pressure_pa = state.pressure_pa;
         move |pump_pressure_pa| {
@@ -344,14 +356,14 @@ impl Circuit<'_> {
             PumpKind::FixedDisplacement => self.constants.compensator.idle_pressure_pa(),
             PumpKind::LoadSensing => self.constants.pump.standby_pressure_pa,
         };
-        idle_pa + self.hooks.idle_extra_pa
+        idle_pa + self.hooks.supply().idle_extra_pa
     }
 
     /// Rate of the pump pressure of a lagging compensator, Pa/s; zero without a lag.
     #[inline(always)]
     #[must_use]
     pub fn compensator_pa_s(&self, openings: Openings, state: &MechanicalState) -> f64 {
-        let lag_s = self.hooks.compensator_lag_s;
+        let lag_s = self.hooks.supply().compensator_lag_s;
         match lag_s > 0.0 {
             true => (self.steady_pressure_pa(openings.lift, state) - state.compensator_pa) / lag_s,
             false => 0.0,
@@ -368,7 +380,7 @@ impl Circuit<'_> {
         state: &MechanicalState,
         dt_s: f64,
     ) -> (f64, f64) {
-        let lag_s = self.hooks.compensator_lag_s;
+        let lag_s = self.hooks.supply().compensator_lag_s;
         if lag_s == 0.0 {
             return (state.compensator_pa, 0.0);
         }
@@ -383,7 +395,7 @@ impl Circuit<'_> {
     #[inline(always)]
     #[must_use]
     pub fn compensator_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
-        if self.hooks.compensator_lag_s == 0.0 {
+        if self.hooks.supply().compensator_lag_s == 0.0 {
             return self.steady_pressure_pa(opening, state);
         }
         if state.catching_up == 0.0 {
@@ -402,7 +414,7 @@ impl Circuit<'_> {
         cylinder_pressure_pa: f64,
         flow_at: impl Fn(f64) -> f64,
     ) -> f64 {
-        match self.hooks.margin_lost_to_flow_pa_s_m3 == 0.0 {
+        match self.hooks.supply().margin_lost_to_flow_pa_s_m3 == 0.0 {
             true => wanted_pa,
             false => self.drooped_with_flow_pa(wanted_pa, cylinder_pressure_pa, flow_at),
         }
@@ -420,7 +432,7 @@ impl Circuit<'_> {
         cylinder_pressure_pa: f64,
         flow_at: impl Fn(f64) -> f64,
     ) -> f64 {
-        let lost_pa_s_m3 = self.hooks.margin_lost_to_flow_pa_s_m3;
+        let lost_pa_s_m3 = self.hooks.supply().margin_lost_to_flow_pa_s_m3;
         let free_m3_s = flow_at(wanted_pa);
         if free_m3_s <= 0.0 {
             return wanted_pa;
@@ -444,7 +456,7 @@ impl Circuit<'_> {
     /// the lift flow as a function of it.
     #[inline(always)]
     fn relieved_pa(&self, wanted_pa: f64, flow_at: impl Fn(f64) -> f64) -> f64 {
-        match self.hooks.relief {
+        match self.hooks.supply().relief {
             // A load-sensing pump reduces its displacement at the limit, so no flow passes a valve that has an override.
             Some(relief) if self.constants.pump.kind == PumpKind::FixedDisplacement => {
                 self.overridden_pa(relief, wanted_pa, flow_at)
@@ -482,7 +494,7 @@ impl Circuit<'_> {
         let lower_valve = &self.constants.lower_valve;
         let opening = self.travelled(opening, drop_pa);
         let flow_m3_s = lower_valve.flow_m3_s(opening.flow_m3_s, drop_pa);
-        flow_m3_s * self.hooks.lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
+        flow_m3_s * self.hooks.oil().lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
     }
 
     /// Lowering flow, m3/s; the valve's drop is reduced by the return line.
@@ -493,7 +505,7 @@ impl Circuit<'_> {
         }
         let opening = self.lower_opening(opening, state);
         let free_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
-        match self.hooks.return_line.is_free() && self.hooks.terms.is_empty() {
+        match self.hooks.oil().return_line.is_free() && self.hooks.own().terms.is_empty() {
             true => free_m3_s,
             false => self.behind_return_line_m3_s(opening, free_m3_s, *state),
         }
@@ -508,15 +520,15 @@ impl Circuit<'_> {
         free_m3_s: f64,
         state: MechanicalState,
     ) -> f64 {
-        let terms = self.hooks.has_term(Place::ReturnPressure);
-        let line = &self.hooks.return_line;
+        let terms = self.hooks.own().has_term(Place::ReturnPressure);
+        let line = &self.hooks.oil().return_line;
         if (line.is_free() && !terms) || free_m3_s == 0.0 {
             return free_m3_s;
         }
         let square_root_law = self.constants.lower_valve.transition_drop_pa == 0.0
-            && self.hooks.lower_drop_factor.is_empty()
-            && self.hooks.lower_travel_factor.is_empty()
-            && self.hooks.flow_number_1_a_sqrt_pa.is_none();
+            && self.hooks.oil().lower_drop_factor.is_empty()
+            && self.hooks.oil().lower_travel_factor.is_empty()
+            && self.hooks.oil().flow_number_1_a_sqrt_pa.is_none();
         if square_root_law && !terms {
             return line.behind_orifice_m3_s(free_m3_s, state.pressure_pa);
         }

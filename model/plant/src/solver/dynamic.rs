@@ -13,6 +13,7 @@
 //! under the 70 kN of a dead-headed pump, so a spring would only add stiffness to the equations.
 
 use crate::constants::Constants;
+use crate::hooks::acting::Acting;
 use crate::model::Model;
 use crate::solver::circuit::{AT_REST_PA, Circuit, Openings};
 use crate::solver::forces::Forces;
@@ -80,9 +81,9 @@ type Derivative = [f64; 5];
 
 /// [`Derivative`] of a state. This is the innermost loop; it is inlined, as passing values would wait for their stores.
 #[inline(always)]
-fn derivative(
-    forces: &Forces,
-    circuit: &Circuit,
+fn derivative<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
     openings: &Openings,
     state: &MechanicalState,
 ) -> Derivative {
@@ -95,12 +96,12 @@ fn derivative(
         pressure_pa,
         ..*state
     };
-    let hose = &circuit.hooks.hose;
+    let hose = &circuit.hooks.oil().hose;
     let flows = circuit.solve(*openings, &state);
     let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
     let masses = &circuit.constants.masses;
     let load_kg = forces.rig.load_kg;
-    let heavier = 1.0 + circuit.hooks.inertia_share;
+    let heavier = 1.0 + circuit.hooks.piston().inertia_share;
     let (shaft_kg, shaft_kg_m) = forces.shaft_inertia_kg(state.piston_m);
     let inertia_kg = masses.inertia_kg(load_kg, dh_dx) * heavier + shaft_kg;
     let slope = masses.half_inertia_slope_kg_m(load_kg, dh_dx, d2h_dx2_1_m) * heavier + shaft_kg_m;
@@ -124,18 +125,23 @@ fn derivative(
         speed_m_s,
         force_n / inertia_kg,
         rise_pa_s,
-        seen_pa_s - hose.catching_up_1_s * state.wall_behind_pa,
+        hose.behind_pa_s(seen_pa_s, state.wall_behind_pa),
         circuit.compensator_pa_s(*openings, &state),
     ]
 }
 
 /// Pressure increase per volume of oil, Pa/m3: reciprocal of `V/E(p) + C`, oil and hoses.
 #[inline(always)]
-fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
+fn stiffness_pa_m3<const KINDS: u8>(
+    circuit: &Circuit<KINDS>,
+    piston_m: f64,
+    pressure_pa: f64,
+) -> f64 {
     let constants = circuit.constants;
-    let modulus_pa = constants.oil.bulk_modulus_pa * circuit.hooks.stiffness_factor(pressure_pa);
+    let modulus_pa =
+        constants.oil.bulk_modulus_pa * circuit.hooks.oil().stiffness_factor(pressure_pa);
     let volume_m3 = constants.cylinder.volume_m3(piston_m.max(0.0));
-    modulus_pa / (volume_m3 + circuit.hooks.hose.at_once_m3_pa * modulus_pa)
+    modulus_pa / (volume_m3 + circuit.hooks.oil().hose.at_once_m3_pa * modulus_pa)
 }
 
 /// Stiffness of the oil alone, without air and hoses, Pa/m3: conversion of a void into a pressure.
@@ -177,7 +183,10 @@ fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
 
 /// The state with a piston beyond a stop put back to it, at rest; the oil is compressed or expanded accordingly.
 #[inline(always)]
-fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
+fn within_stops<const KINDS: u8>(
+    circuit: &Circuit<KINDS>,
+    state: MechanicalState,
+) -> MechanicalState {
     let cylinder = &circuit.constants.cylinder;
     let piston_m = state.piston_m.clamp(0.0, cylinder.stroke_m);
     let beyond_m = state.piston_m - piston_m;
@@ -193,14 +202,27 @@ fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
     }
 }
 
+/// The state after `dt_s` at a rate.
 #[inline(always)]
-fn moved(state: &MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState {
+fn moved<const KINDS: u8>(
+    hooks: Acting<KINDS>,
+    state: &MechanicalState,
+    rate: Derivative,
+    dt_s: f64,
+) -> MechanicalState {
+    let piston_m = state.piston_m + dt_s * rate[0];
+    let travel_m = piston_m - state.piston_m;
+    let compensator_pa = match hooks.supply().compensator_lag_s == 0.0 {
+        true => state.compensator_pa,
+        false => state.compensator_pa + dt_s * rate[4],
+    };
     MechanicalState {
-        piston_m: state.piston_m + dt_s * rate[0],
+        piston_m,
         speed_m_s: state.speed_m_s + dt_s * rate[1],
         pressure_pa: state.pressure_pa + dt_s * rate[2],
         wall_behind_pa: state.wall_behind_pa + dt_s * rate[3],
-        compensator_pa: state.compensator_pa + dt_s * rate[4],
+        bristles_m: hooks.piston().bent_m(state.bristles_m, travel_m, dt_s),
+        compensator_pa,
         ..*state
     }
 }
@@ -209,7 +231,12 @@ fn moved(state: &MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalStat
 /// orifice whose drop depends on the cylinder pressure. The flow is proportional to the square root of the drop, so the
 /// rate increases as the drop decreases: the drop at the end of the step is used.
 #[inline(always)]
-fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState, dt_s: f64) -> f64 {
+fn settling_rate<const KINDS: u8>(
+    circuit: &Circuit<KINDS>,
+    openings: Openings,
+    state: &MechanicalState,
+    dt_s: f64,
+) -> f64 {
     let constants = circuit.constants;
     let flows = circuit.solve(openings, state);
     let stiffness = oil_stiffness_pa_m3(constants, state.piston_m);
@@ -229,9 +256,9 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
     );
     // A working compensator without lag keeps the lift valve's drop constant regardless of the cylinder pressure, up to
     // the relief pressure.
-    let drooped_pa = circuit.hooks.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
+    let drooped_pa = circuit.hooks.supply().margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
     let wanted_pa = circuit.lifting_pressure_pa(state);
-    let lagging = circuit.hooks.compensator_lag_s > 0.0;
+    let lagging = circuit.hooks.supply().compensator_lag_s > 0.0;
     let keeps = flows.pump_pressure_pa + drooped_pa >= wanted_pa - TOLERANCE_PA;
     let compensated = keeps && !lagging;
     let room_pa = match compensated {
@@ -257,8 +284,8 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
 
 /// Settling rate of a hose's creeping wall and of the pressure with it, 1/s.
 #[inline(always)]
-fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
-    let hose = &circuit.hooks.hose;
+fn creeping_rate<const KINDS: u8>(circuit: &Circuit<KINDS>, state: &MechanicalState) -> f64 {
+    let hose = &circuit.hooks.oil().hose;
     if hose.creeping_m3_pa == 0.0 {
         return 0.0;
     }
@@ -268,8 +295,8 @@ fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
 
 /// Settling rate of a lagging compensator, 1/s.
 #[inline(always)]
-fn lagging_rate(circuit: &Circuit) -> f64 {
-    match circuit.hooks.compensator_lag_s {
+fn lagging_rate<const KINDS: u8>(circuit: &Circuit<KINDS>) -> f64 {
+    match circuit.hooks.supply().compensator_lag_s {
         0.0 => 0.0,
         lag_s => 1.0 / lag_s,
     }
@@ -277,9 +304,9 @@ fn lagging_rate(circuit: &Circuit) -> f64 {
 
 /// Longest step, s, that resolves the oscillation of the load on the oil at the present piston position.
 #[must_use]
-pub fn longest_step_s(
-    forces: &Forces,
-    circuit: &Circuit,
+pub fn longest_step_s<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
     state: MechanicalState,
     steps: Steps,
 ) -> f64 {
@@ -294,25 +321,29 @@ pub fn longest_step_s(
 /// Angular frequency of the load on its oil with shut valves, rad/s: `A sqrt(K / M)` with the stiffness `K` of oil, air and
 /// hoses at the present pressure.
 #[must_use]
-pub fn load_frequency_rad_s(forces: &Forces, circuit: &Circuit, state: &MechanicalState) -> f64 {
+pub fn load_frequency_rad_s<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
+    state: &MechanicalState,
+) -> f64 {
     let dh_dx = forces.model.linkage().dh_dx(state.piston_m);
     let constants = circuit.constants;
     let of_load_kg = constants.masses.inertia_kg(forces.rig.load_kg, dh_dx);
     let (shaft_kg, _) = forces.shaft_inertia_kg(state.piston_m);
-    let inertia_kg = of_load_kg * (1.0 + circuit.hooks.inertia_share) + shaft_kg;
+    let inertia_kg = of_load_kg * (1.0 + circuit.hooks.piston().inertia_share) + shaft_kg;
     let stiffness_pa_m3 = stiffness_pa_m3(circuit, state.piston_m, state.pressure_pa);
     constants.cylinder.area_m2() * (stiffness_pa_m3 / inertia_kg).sqrt()
 }
 
 /// Whether the hitch stays at rest in a step with these openings.
 #[must_use]
-pub fn rests(
-    forces: &Forces,
-    circuit: &Circuit,
+pub fn rests<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
     state: &MechanicalState,
     openings: &[Openings; 3],
 ) -> bool {
-    circuit.hooks.stays_at_rest()
+    circuit.hooks.all().stays_at_rest()
         && openings.iter().all(Openings::shut)
         && state.void_m3 == 0.0
         && state.speed_m_s.abs() < AT_REST_M_S
@@ -323,9 +354,9 @@ pub fn rests(
 
 /// One step with the openings at its start, middle and end.
 #[must_use]
-pub fn step(
-    forces: &Forces,
-    circuit: &Circuit,
+pub fn step<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
     state: &MechanicalState,
     openings: &[Openings; 3],
     dt_s: f64,
@@ -366,19 +397,14 @@ fn between(openings: &[Openings; 3], share: f64) -> Openings {
     from.towards(to, part)
 }
 
-fn runge_kutta(
-    forces: &Forces,
-    circuit: &Circuit,
+fn runge_kutta<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
     state: &MechanicalState,
     openings: &[Openings; 3],
     dt_s: f64,
 ) -> MechanicalState {
-    let moved = |state: &MechanicalState, rate, dt_s| {
-        let mut moved = moved(state, rate, dt_s);
-        let travel_m = moved.piston_m - state.piston_m;
-        moved.bristles_m = circuit.hooks.bent_m(state.bristles_m, travel_m, dt_s);
-        moved
-    };
+    let hooks = circuit.hooks;
     let start = stretched(forces.model, state);
     let [first, middle, last] = openings;
     // A single call site, so that the compiler inlines the derivative.
@@ -390,12 +416,8 @@ fn runge_kutta(
     ];
     let (mut rate, mut sum) = ([0.0; 5], [0.0; 5]);
     for (share, weight, openings) in stages {
-        rate = derivative(
-            forces,
-            circuit,
-            openings,
-            &moved(&start, rate, share * dt_s),
-        );
+        let state = moved(hooks, &start, rate, share * dt_s);
+        rate = derivative(forces, circuit, openings, &state);
         for (sum, rate) in sum.iter_mut().zip(rate) {
             *sum += weight * rate;
         }
@@ -403,7 +425,7 @@ fn runge_kutta(
     let mean = sum.map(|sum| sum / 6.0);
     let end = torn(
         forces.model,
-        within_stops(circuit, moved(&start, mean, dt_s)),
+        within_stops(circuit, moved(hooks, &start, mean, dt_s)),
     );
     // Forces too large for any integrator, from a term or from invalid constants: the plant stops.
     if end.is_finite() {

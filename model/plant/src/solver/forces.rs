@@ -1,6 +1,7 @@
 //! The forces on the piston other than the oil pressure, including those of effects.
 
-use crate::hooks::effect_hooks::{EffectHooks, Ground};
+use crate::hooks::acting::Acting;
+use crate::hooks::effect_hooks::Ground;
 use crate::hooks::place::Place;
 use crate::model::Model;
 use crate::solver::moment::Moment;
@@ -11,18 +12,18 @@ const SLIDING_M_S: f64 = 0.012;
 
 /// Forces on the piston of one hitch.
 #[derive(Clone, Copy)]
-pub struct Forces<'a> {
+pub struct Forces<'a, const KINDS: u8> {
     /// The model.
     pub model: &'a Model,
     /// The attached effects.
-    pub hooks: &'a EffectHooks,
+    pub hooks: Acting<'a, KINDS>,
     /// The load.
     pub rig: &'a HitchRig,
     /// The signals for terms.
-    pub moment: Moment<'a>,
+    pub moment: Moment<'a, KINDS>,
 }
 
-impl Forces<'_> {
+impl<const KINDS: u8> Forces<'_, KINDS> {
     /// Static force of load and dead weight, N, downwards, at piston travel `piston_m`, all else as in the previous
     /// step.
     #[inline(always)]
@@ -38,7 +39,10 @@ impl Forces<'_> {
     pub fn weight_at_n(&self, dh_dx: f64, state: &MechanicalState) -> f64 {
         let masses = &self.model.constants().masses;
         let load_share = || masses.load_share(self.rig.load_kg);
-        let factor = self.hooks.weight_factor(state.piston_m, load_share);
+        let factor = self
+            .hooks
+            .piston()
+            .weight_factor(state.piston_m, load_share);
         masses.weight_force_n(self.rig.load_kg, dh_dx) * factor
             + self.moment.term(Place::Weight, state, |_| ())
     }
@@ -48,7 +52,7 @@ impl Forces<'_> {
     #[inline(always)]
     #[must_use]
     pub fn shaft_inertia_kg(&self, piston_m: f64) -> (f64, f64) {
-        let inertia_kg_m2 = self.hooks.shaft_inertia_kg_m2;
+        let inertia_kg_m2 = self.hooks.piston().shaft_inertia_kg_m2;
         match inertia_kg_m2 == 0.0 {
             true => (0.0, 0.0),
             false => self.some_shaft_inertia_kg(inertia_kg_m2, piston_m),
@@ -81,7 +85,7 @@ impl Forces<'_> {
     #[inline(always)]
     #[must_use]
     pub fn ground_n(&self, piston_m: f64, speed_m_s: f64) -> f64 {
-        match &self.hooks.ground {
+        match &self.hooks.piston().ground {
             Some(ground) => self.ground_contact_n(ground, piston_m, speed_m_s),
             None => 0.0,
         }
@@ -98,8 +102,8 @@ impl Forces<'_> {
     #[inline(always)]
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
-        self.hooks.friction_n(state, weight_n)
-            + self.hooks.bristles_n(state.bristles_m)
+        self.hooks.piston().friction_n(state, weight_n)
+            + self.hooks.piston().bristles_n(state.bristles_m)
             + self.moment.term(Place::Friction, state, |_| ())
     }
 
@@ -115,14 +119,18 @@ impl Forces<'_> {
             self.friction_n(&state, weight_n) - self.friction_n(at_rest, weight_n)
         };
         let smooth_n = 2.0 * at(SLIDING_M_S) - at(2.0 * SLIDING_M_S);
-        let bristles_n = self.hooks.bristles.map_or(0.0, |bristles| bristles.force_n);
+        let bristles_n = self
+            .hooks
+            .piston()
+            .bristles
+            .map_or(0.0, |bristles| bristles.force_n);
         (smooth_n + bristles_n).max(0.0)
     }
 
     /// Lowest travel of the piston, m: the end of the stroke, or where the ground carries the weight.
     #[must_use]
     pub fn lowest_m(&self) -> f64 {
-        if self.hooks.ground.is_none() {
+        if self.hooks.piston().ground.is_none() {
             return 0.0;
         }
         let stroke_m = self.model.constants().cylinder.stroke_m;

@@ -22,7 +22,7 @@
 //! finite is skipped, so terms that depend on one of these are absent, and a fit that reaches a non-finite term sees
 //! the model without it.
 
-use crate::hooks::effect_hooks::EffectHooks;
+use crate::hooks::acting::Acting;
 use crate::hooks::place::Place;
 use crate::hooks::signals::Signals;
 use crate::model::Model;
@@ -30,16 +30,16 @@ use crate::state::MechanicalState;
 
 /// The state of the plant at the present instant.
 #[derive(Clone, Copy)]
-pub struct Moment<'a> {
+pub struct Moment<'a, const KINDS: u8> {
     /// The model.
     pub model: &'a Model,
     /// The attached effects.
-    pub hooks: &'a EffectHooks,
+    pub hooks: Acting<'a, KINDS>,
     /// The signals at the end of the previous step, with the currents of this one.
     pub before: &'a Signals,
 }
 
-impl Moment<'_> {
+impl<const KINDS: u8> Moment<'_, KINDS> {
     /// Sum of the terms at a place, in its SI unit, for a state of piston and oil; `refine` sets the signals that are
     /// known better than from the previous step.
     #[inline(always)]
@@ -51,7 +51,7 @@ impl Moment<'_> {
         refine: impl FnOnce(&mut Signals),
     ) -> f64 {
         // Nearly all plants have no terms, and this is in the innermost loop.
-        if self.hooks.terms.is_empty() {
+        if self.hooks.own().terms.is_empty() {
             return 0.0;
         }
         self.present_term(place, *state, refine)
@@ -66,12 +66,12 @@ impl Moment<'_> {
         state: MechanicalState,
         refine: impl FnOnce(&mut Signals),
     ) -> f64 {
-        if !self.hooks.has_term(place) {
+        if !self.hooks.own().has_term(place) {
             return 0.0;
         }
         let mut signals = self.signals(&state);
         refine(&mut signals);
-        self.hooks.term(place, &signals)
+        self.hooks.own().term(place, &signals)
     }
 
     /// The signals for a state of piston and oil.
@@ -90,7 +90,10 @@ impl Moment<'_> {
             let load_kg = signals.load_kg;
             let load_share = || masses.load_share(load_kg);
             signals.weight_n = masses.weight_force_n(load_kg, posture.dh_dx)
-                * self.hooks.weight_factor(state.piston_m, load_share);
+                * self
+                    .hooks
+                    .piston()
+                    .weight_factor(state.piston_m, load_share);
         }
         signals
     }
