@@ -397,7 +397,7 @@ fn sum(laws: &[Law], of: f64) -> f64 {
 #[cold]
 #[inline(never)]
 fn sum_of_some(laws: &[Law], of: f64) -> f64 {
-    laws.iter().map(|law| law(of)).sum()
+    laws.iter().fold(NONE, |sum, law| sum + law(of))
 }
 
 /// Product of laws.
@@ -412,7 +412,7 @@ fn product(laws: &[Law], of: f64) -> f64 {
 #[cold]
 #[inline(never)]
 fn product_of_some(laws: &[Law], of: f64) -> f64 {
-    laws.iter().map(|law| law(of)).product()
+    laws.iter().fold(1.0, |product, law| product * law(of))
 }
 
 impl EffectHooks {
@@ -457,7 +457,7 @@ impl EffectHooks {
     #[inline(never)]
     fn some_friction_n(&self, state: MechanicalState, weight_n: f64) -> f64 {
         let forces = self.friction.iter();
-        forces.map(|force| force(&state, weight_n)).sum()
+        forces.fold(NONE, |sum, force| sum + force(&state, weight_n))
     }
 
     /// Force of the bristles, N, at a deflection, m.
@@ -490,7 +490,9 @@ impl EffectHooks {
     #[inline(never)]
     fn some_weight_factor(&self, piston_m: f64, load_share: f64) -> f64 {
         let factors = self.weight_factor.iter();
-        factors.map(|factor| factor(piston_m, load_share)).product()
+        factors.fold(1.0, |product, factor| {
+            product * factor(piston_m, load_share)
+        })
     }
 
     /// Pressure downstream of the lowering valve, Pa, at a flow through it, m3/s.

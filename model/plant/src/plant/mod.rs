@@ -7,7 +7,7 @@ mod rest;
 
 use crate::components::lag::Lag;
 use crate::constants::Dynamics;
-use crate::hooks::acting::{Acting, EVERY, kinds, with_kinds};
+use crate::hooks::acting::{EVERY, kinds, with_kinds};
 use crate::hooks::effect::AddedEffect;
 use crate::hooks::effect_hooks::{Currents, EffectHooks, RunConditions};
 use crate::hooks::place::Place;
@@ -208,40 +208,16 @@ impl<'m> Plant<'m> {
 
     /// The circuit with effects of any kind.
     fn circuit(&self) -> Circuit<'_, EVERY> {
-        self.circuit_with()
+        Circuit::new(self.model, &self.hooks, &self.signals)
     }
 
     /// The forces with effects of any kind.
     fn forces<'a>(&'a self, rig: &'a HitchRig) -> Forces<'a, EVERY> {
-        self.forces_with(rig)
+        Forces::new(self.model, &self.hooks, &self.signals, rig)
     }
 
-    #[inline(always)]
-    fn circuit_with<const KINDS: u8>(&self) -> Circuit<'_, KINDS> {
-        Circuit {
-            constants: self.model.constants(),
-            hooks: Acting::only(&self.hooks),
-            moment: self.moment(),
-        }
-    }
-
-    #[inline(always)]
-    fn forces_with<'a, const KINDS: u8>(&'a self, rig: &'a HitchRig) -> Forces<'a, KINDS> {
-        Forces {
-            model: self.model,
-            hooks: Acting::only(&self.hooks),
-            rig,
-            moment: self.moment(),
-        }
-    }
-
-    #[inline(always)]
-    fn moment<const KINDS: u8>(&self) -> Moment<'_, KINDS> {
-        Moment {
-            model: self.model,
-            hooks: Acting::only(&self.hooks),
-            before: &self.signals,
-        }
+    fn moment(&self) -> Moment<'_, EVERY> {
+        self.circuit().moment
     }
 
     /// Starts a step of a lagging compensator in the quasi-static plant.
@@ -283,9 +259,12 @@ impl<'m> Plant<'m> {
                     speed_m_s: self.state.speed_m_s,
                     dt_s,
                 };
+                let (model, hooks, signals) = (self.model, &self.hooks, &self.signals);
+                let (state, lowest_m) = (&self.state, self.lowest_m);
                 let piston_m = with_kinds!(self.kinds, KINDS => {
-                    let (forces, circuit) = (self.forces_with::<KINDS>(&rig), self.circuit_with());
-                    steady::step(&forces, &circuit, self.state, end, self.lowest_m, dt_s)
+                    let forces = Forces::<KINDS>::new(model, hooks, signals, &rig);
+                    let circuit = Circuit::new(model, hooks, signals);
+                    steady::step(&forces, &circuit, state, end, lowest_m, dt_s)
                 });
                 let moved_m = piston_m - self.state.piston_m;
                 self.state.bristles_m = self.hooks.bent_m(self.state.bristles_m, moved_m, dt_s);
@@ -300,12 +279,15 @@ impl<'m> Plant<'m> {
                 let half = self.open(from, middle, 0.5 * dt_s);
                 let end = self.open(middle, currents, 0.5 * dt_s);
                 let openings = [start, half, end];
-                self.state = with_kinds!(self.kinds, KINDS => {
-                    let (forces, circuit) = (self.forces_with::<KINDS>(&rig), self.circuit_with());
-                    if dynamic::rests(&forces, &circuit, &self.state, &openings) {
+                let (model, hooks, signals) = (self.model, &self.hooks, &self.signals);
+                let state = &mut self.state;
+                with_kinds!(self.kinds, KINDS => {
+                    let forces = Forces::<KINDS>::new(model, hooks, signals, &rig);
+                    let circuit = Circuit::new(model, hooks, signals);
+                    if dynamic::rests(&forces, &circuit, state, &openings) {
                         return;
                     }
-                    dynamic::step(&forces, &circuit, &self.state, &openings, dt_s)
+                    dynamic::step(&forces, &circuit, state, &openings, dt_s);
                 });
             }
         }
@@ -372,7 +354,7 @@ impl<'m> Plant<'m> {
         if self.hooks.terms.is_empty() {
             return;
         }
-        let now = self.moment::<EVERY>().signals(&self.state);
+        let now = self.moment().signals(&self.state);
         self.signals = Signals {
             pump_pressure_pa: self.flows.pump_pressure_pa,
             lift_flow_m3_s: self.flows.lift_m3_s,
@@ -383,9 +365,11 @@ impl<'m> Plant<'m> {
 
     /// Updates the quasi-static speed, pressure and flows at the present openings and travel.
     fn balance(&mut self, rig: &HitchRig, before: Option<steady::Before>) {
+        let (model, hooks, signals) = (self.model, &self.hooks, &self.signals);
         let balance = with_kinds!(self.kinds, KINDS => {
-            let (forces, circuit) = (self.forces_with::<KINDS>(rig), self.circuit_with());
-            steady::balance(&forces, &circuit, self.openings, self.state, before)
+            let forces = Forces::<KINDS>::new(model, hooks, signals, rig);
+            let circuit = Circuit::new(model, hooks, signals);
+            steady::balance(&forces, &circuit, self.openings, &self.state, before)
         });
         self.state.speed_m_s = balance.speed_m_s;
         self.state.pressure_pa = balance.pressure_pa;

@@ -2,7 +2,6 @@
 
 use crate::components::oil;
 use crate::constants::Dynamics;
-use crate::hooks::acting::EVERY;
 use crate::hooks::place::Place;
 use crate::hooks::signals::Signals;
 use crate::plant::Plant;
@@ -89,7 +88,7 @@ impl Plant<'_> {
             return linkage.piston_m(angle_behind_rad(shown_deg));
         }
         let excess_rad = |piston_m: f64| {
-            let signals = self.moment::<EVERY>().signals(&self.held_at(rig, piston_m));
+            let signals = self.moment().signals(&self.held_at(rig, piston_m));
             let term_deg = self.hooks.term(Place::AngleSensor, &signals).to_degrees();
             signals.rocker_angle_rad - angle_behind_rad(shown_deg - term_deg)
         };

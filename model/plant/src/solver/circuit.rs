@@ -2,11 +2,12 @@
 
 use crate::components::orifice_valve::OrificeValve;
 use crate::components::pump::PumpKind;
-use crate::components::valve_curve::ValveCurve;
 use crate::constants::Constants;
 use crate::hooks::acting::Acting;
-use crate::hooks::effect_hooks::{FlowFactor, Line, ReliefOverride};
+use crate::hooks::effect_hooks::{EffectHooks, FlowFactor, Line, ReliefOverride};
 use crate::hooks::place::Place;
+use crate::hooks::signals::Signals;
+use crate::model::Model;
 use crate::solver::moment::Moment;
 use crate::state::MechanicalState;
 
@@ -128,30 +129,49 @@ pub struct Circuit<'a, const KINDS: u8> {
 /// Largest factor of terms on a valve's flow.
 const GREATEST_FACTOR: f64 = 10.0;
 
-impl<const KINDS: u8> Circuit<'_, KINDS> {
+impl<'a, const KINDS: u8> Circuit<'a, KINDS> {
+    /// The circuit of a model with effects of `KINDS`; `before` are the signals for terms.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(model: &'a Model, hooks: &'a EffectHooks, before: &'a Signals) -> Self {
+        let hooks = Acting::only(hooks);
+        Self {
+            constants: model.constants(),
+            hooks,
+            moment: Moment {
+                model,
+                hooks,
+                before,
+            },
+        }
+    }
+
     /// Openings of the valves at effective currents, A.
     #[inline(always)]
     #[must_use]
     pub fn openings(&self, lift_a: f64, lower_a: f64) -> Openings {
-        let flow_m3_s = |curve: &ValveCurve, current_a: f64, factor: FlowFactor| {
-            let table_m3_s = curve.flow_m3_s(current_a);
-            table_m3_s * factor.at(table_m3_s, curve.saturation_m3_s())
-        };
-        let opening = |valve: &OrificeValve, current_a: f64, factor: FlowFactor| Opening {
-            flow_m3_s: flow_m3_s(&valve.curve, current_a, factor),
-            beyond_threshold_a: match self.depends_on_travel() {
-                true => (current_a - valve.curve.threshold_a()).max(0.0),
-                false => 0.0,
-            },
-        };
         let Constants {
             lift_valve,
             lower_valve,
             ..
         } = self.constants;
         Openings {
-            lift: opening(lift_valve, lift_a, self.hooks.all().lift_flow_factor),
-            lower: opening(lower_valve, lower_a, self.hooks.all().lower_flow_factor),
+            lift: self.opening(lift_valve, lift_a, self.hooks.all().lift_flow_factor),
+            lower: self.opening(lower_valve, lower_a, self.hooks.all().lower_flow_factor),
+        }
+    }
+
+    /// Opening of a valve at an effective current, A.
+    #[inline(always)]
+    fn opening(&self, valve: &OrificeValve, current_a: f64, factor: FlowFactor) -> Opening {
+        let curve = &valve.curve;
+        let table_m3_s = curve.flow_m3_s(current_a);
+        Opening {
+            flow_m3_s: table_m3_s * factor.at(table_m3_s, curve.saturation_m3_s()),
+            beyond_threshold_a: match self.depends_on_travel() {
+                true => (current_a - curve.threshold_a()).max(0.0),
+                false => 0.0,
+            },
         }
     }
 

@@ -352,15 +352,16 @@ pub fn rests<const KINDS: u8>(
         && derivative(forces, circuit, &Openings::default(), state)[1].abs() < AT_REST_M_S2
 }
 
-/// One step with the openings at its start, middle and end.
-#[must_use]
+/// One step of a state with the openings at its start, middle and end.
+///
+/// The state is changed in place: a copy of what was just written would wait for the stores.
 pub fn step<const KINDS: u8>(
     forces: &Forces<KINDS>,
     circuit: &Circuit<KINDS>,
-    state: &MechanicalState,
+    state: &mut MechanicalState,
     openings: &[Openings; 3],
     dt_s: f64,
-) -> MechanicalState {
+) {
     // A wider opening settles faster.
     let [first, _, last] = openings;
     let widest = if first.wider_than(last) { first } else { last };
@@ -377,13 +378,11 @@ pub fn step<const KINDS: u8>(
     }
     let pieces = pieces.ceil().min(256.0) as usize;
     let piece_s = dt_s / pieces as f64;
-    let mut state = *state;
     for piece in 0..pieces {
         let share = |part: f64| (piece as f64 + part) / pieces as f64;
         let ends = [0.0, 0.5, 1.0].map(|part| between(openings, share(part)));
-        state = runge_kutta(forces, circuit, &state, &ends, piece_s);
+        runge_kutta(forces, circuit, state, &ends, piece_s);
     }
-    state
 }
 
 /// Openings at a share of the step, interpolated linearly between start, middle and end.
@@ -400,10 +399,10 @@ fn between(openings: &[Openings; 3], share: f64) -> Openings {
 fn runge_kutta<const KINDS: u8>(
     forces: &Forces<KINDS>,
     circuit: &Circuit<KINDS>,
-    state: &MechanicalState,
+    state: &mut MechanicalState,
     openings: &[Openings; 3],
     dt_s: f64,
-) -> MechanicalState {
+) {
     let hooks = circuit.hooks;
     let start = stretched(forces.model, state);
     let [first, middle, last] = openings;
@@ -429,11 +428,8 @@ fn runge_kutta<const KINDS: u8>(
     );
     // Forces too large for any integrator, from a term or from invalid constants: the plant stops.
     if end.is_finite() {
-        end
+        *state = end;
     } else {
-        MechanicalState {
-            speed_m_s: 0.0,
-            ..*state
-        }
+        state.speed_m_s = 0.0;
     }
 }

@@ -1,8 +1,9 @@
 //! The forces on the piston other than the oil pressure, including those of effects.
 
 use crate::hooks::acting::Acting;
-use crate::hooks::effect_hooks::Ground;
+use crate::hooks::effect_hooks::{EffectHooks, Ground};
 use crate::hooks::place::Place;
+use crate::hooks::signals::Signals;
 use crate::model::Model;
 use crate::solver::moment::Moment;
 use crate::state::{HitchRig, MechanicalState};
@@ -23,7 +24,29 @@ pub struct Forces<'a, const KINDS: u8> {
     pub moment: Moment<'a, KINDS>,
 }
 
-impl<const KINDS: u8> Forces<'_, KINDS> {
+impl<'a, const KINDS: u8> Forces<'a, KINDS> {
+    /// The forces on the piston of a hitch with effects of `KINDS`; `before` are the signals for terms.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(
+        model: &'a Model,
+        hooks: &'a EffectHooks,
+        before: &'a Signals,
+        rig: &'a HitchRig,
+    ) -> Self {
+        let hooks = Acting::only(hooks);
+        Self {
+            model,
+            hooks,
+            rig,
+            moment: Moment {
+                model,
+                hooks,
+                before,
+            },
+        }
+    }
+
     /// Static force of load and dead weight, N, downwards, at piston travel `piston_m`, all else as in the previous
     /// step.
     #[inline(always)]

@@ -61,18 +61,19 @@ pub struct Before {
 }
 
 /// Flow and force balance at the present piston position and bristle deflection.
+#[inline(always)]
 #[must_use]
 pub fn balance<const KINDS: u8>(
     forces: &Forces<KINDS>,
     circuit: &Circuit<KINDS>,
     openings: Openings,
-    MechanicalState {
+    &MechanicalState {
         piston_m,
         bristles_m,
         compensator_pa,
         catching_up,
         ..
-    }: MechanicalState,
+    }: &MechanicalState,
     before: Option<Before>,
 ) -> Balance {
     let area_m2 = circuit.constants.cylinder.area_m2();
@@ -154,7 +155,7 @@ fn inertia_kg<const KINDS: u8>(forces: &Forces<KINDS>, piston_m: f64) -> f64 {
 pub fn step<const KINDS: u8>(
     forces: &Forces<KINDS>,
     circuit: &Circuit<KINDS>,
-    state: MechanicalState,
+    state: &MechanicalState,
     end: Openings,
     lowest_m: f64,
     dt_s: f64,
@@ -172,8 +173,8 @@ pub fn step<const KINDS: u8>(
             .hooks
             .piston()
             .bent_m(state.bristles_m, guess_m - state.piston_m, dt_s),
-        ..state
+        ..*state
     };
-    let there = balance(forces, circuit, end, guess, Some(before));
+    let there = balance(forces, circuit, end, &guess, Some(before));
     within(state.piston_m + 0.5 * dt_s * (state.speed_m_s + there.speed_m_s))
 }
