@@ -149,11 +149,13 @@ impl<'m> Plant<'m> {
     /// Updates the readings, `dt_s` after the last update.
     fn read(&mut self, dt_s: f64) {
         self.refresh_unless_balanced();
-        let mut reading = self.truth();
+        self.reading = self.truth();
         for sensor in &mut self.hooks.sensors {
-            sensor.advance(&mut reading, dt_s);
+            sensor.advance(&mut self.reading, dt_s);
         }
-        self.reading = self.with_sensor_terms(reading);
+        if !self.hooks.terms.is_empty() {
+            self.reading = self.with_sensor_terms(self.reading);
+        }
     }
 
     /// The present readings of the instruments.
@@ -175,14 +177,13 @@ impl<'m> Plant<'m> {
     }
 
     /// Rocker angle, rad; NaN on a flow bench.
+    #[inline]
     #[must_use]
     pub fn rocker_angle_rad(&self) -> f64 {
         match self.rig {
             Rig::Hitch(_) => {
-                self.model
-                    .linkage()
-                    .at(self.state.piston_m)
-                    .rocker_angle_rad
+                let posture = self.model.linkage().at(self.state.piston_m);
+                posture.rocker_angle_rad
             }
             Rig::Flow { .. } => f64::NAN,
         }

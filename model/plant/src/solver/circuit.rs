@@ -33,7 +33,7 @@ impl Opening {
 
     /// Linear interpolation between this opening and another.
     #[inline(always)]
-    fn towards(self, to: Self, share: f64) -> Self {
+    fn towards(&self, to: &Self, share: f64) -> Self {
         let between = |from: f64, to: f64| from + (to - from) * share;
         Self {
             flow_m3_s: between(self.flow_m3_s, to.flow_m3_s),
@@ -79,10 +79,10 @@ impl Openings {
     /// Linear interpolation between these openings and others.
     #[inline(always)]
     #[must_use]
-    pub fn towards(self, to: Self, share: f64) -> Self {
+    pub fn towards(&self, to: &Self, share: f64) -> Self {
         Self {
-            lift: self.lift.towards(to.lift, share),
-            lower: self.lower.towards(to.lower, share),
+            lift: self.lift.towards(&to.lift, share),
+            lower: self.lower.towards(&to.lower, share),
         }
     }
 }

@@ -388,10 +388,11 @@ pub fn step<const KINDS: u8>(
 /// Openings at a share of the step, interpolated linearly between start, middle and end.
 #[inline(always)]
 fn between(openings: &[Openings; 3], share: f64) -> Openings {
+    let [start, middle, end] = openings;
     let (from, to, part) = if share <= 0.5 {
-        (openings[0], openings[1], 2.0 * share)
+        (start, middle, 2.0 * share)
     } else {
-        (openings[1], openings[2], 2.0 * share - 1.0)
+        (middle, end, 2.0 * share - 1.0)
     };
     from.towards(to, part)
 }
