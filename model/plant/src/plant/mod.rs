@@ -304,9 +304,9 @@ impl<'m> Plant<'m> {
     /// of the load does not matter, but whether a jump happened does.
     #[inline(always)]
     fn open(&mut self, from: Currents, to: Currents, dt_s: f64) -> Openings {
-        let changes = to.largest_difference_a(from) / self.hooks.largest_change_a;
-        if changes > 1.0 {
-            let pieces = changes.ceil();
+        let (change_a, largest_a) = (to.largest_difference_a(from), self.hooks.largest_change_a);
+        if change_a > largest_a {
+            let pieces = (change_a / largest_a).ceil();
             let piece_s = dt_s / pieces;
             for piece in 1..pieces as usize {
                 self.take_spools(from.towards(to, piece as f64 / pieces), piece_s);

@@ -244,8 +244,8 @@ fn settling_rate<const KINDS: u8>(
     let rise_pa = stiffness * gained_m3_s * dt_s;
     let slope = |flow_m3_s: f64, drop_pa: f64, lost_pa: f64, transition_pa: f64| {
         let least_pa = (0.5 * transition_pa).max(SMALLEST_DROP_PA);
-        let [before_pa, after_pa] =
-            [drop_pa, drop_pa - lost_pa.max(0.0)].map(|pa| pa.max(least_pa));
+        let before_pa = drop_pa.max(least_pa);
+        let after_pa = (drop_pa - lost_pa.max(0.0)).max(least_pa);
         0.5 * flow_m3_s / (before_pa * after_pa).sqrt()
     };
     let lower = slope(
@@ -378,10 +378,12 @@ pub fn step<const KINDS: u8>(
     }
     let pieces = pieces.ceil().min(256.0) as usize;
     let piece_s = dt_s / pieces as f64;
+    let at = |piece: f64| between(openings, piece / pieces as f64);
+    let mut start = at(0.0);
     for piece in 0..pieces {
-        let share = |part: f64| (piece as f64 + part) / pieces as f64;
-        let ends = [0.0, 0.5, 1.0].map(|part| between(openings, share(part)));
-        runge_kutta(forces, circuit, state, &ends, piece_s);
+        let (middle, end) = (at(piece as f64 + 0.5), at(piece as f64 + 1.0));
+        runge_kutta(forces, circuit, state, &[start, middle, end], piece_s);
+        start = end;
     }
 }
 
