@@ -3,6 +3,7 @@
 pub mod acting;
 pub mod effect;
 pub mod effect_hooks;
+pub mod elements;
 pub mod place;
 pub mod reading;
 pub mod signals;

@@ -14,10 +14,11 @@ use crate::hooks::place::Place;
 use crate::hooks::reading::Reading;
 use crate::hooks::signals::Signals;
 use crate::model::Model;
-use crate::solver::circuit::{Circuit, Flows, Openings};
+use crate::solver::circuit::{Circuit, Flows};
 use crate::solver::dynamic::Steps;
 use crate::solver::forces::Forces;
 use crate::solver::moment::Moment;
+use crate::solver::openings::Openings;
 use crate::solver::{dynamic, steady};
 use crate::state::{HitchRig, MechanicalState, Rig};
 

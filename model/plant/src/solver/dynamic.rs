@@ -15,8 +15,9 @@
 use crate::constants::Constants;
 use crate::hooks::acting::Acting;
 use crate::model::Model;
-use crate::solver::circuit::{AT_REST_PA, Circuit, Openings};
+use crate::solver::circuit::{AT_REST_PA, Circuit};
 use crate::solver::forces::Forces;
+use crate::solver::openings::Openings;
 use crate::state::MechanicalState;
 
 /// Step sizes of the integrator.

@@ -1,7 +1,8 @@
 //! The forces on the piston other than the oil pressure, including those of effects.
 
 use crate::hooks::acting::Acting;
-use crate::hooks::effect_hooks::{EffectHooks, Ground};
+use crate::hooks::effect_hooks::EffectHooks;
+use crate::hooks::elements::Ground;
 use crate::hooks::place::Place;
 use crate::hooks::signals::Signals;
 use crate::model::Model;

@@ -8,9 +8,10 @@
 
 use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
-use crate::solver::circuit::{Circuit, Flows, Openings};
+use crate::solver::circuit::{Circuit, Flows};
 use crate::solver::dynamic::Steps;
 use crate::solver::forces::Forces;
+use crate::solver::openings::Openings;
 use crate::state::MechanicalState;
 
 /// Rate of change above which a current counts as jumping, A/s.
