@@ -5,6 +5,7 @@
 //! source: where a kind does not act, its hooks are those of [`NO_EFFECTS`], a constant that the compiler evaluates.
 
 use crate::hooks::effect_hooks::EffectHooks;
+use crate::hooks::elements::Hose;
 
 /// Effects on pump, compensator, check valve and relief valve.
 pub const SUPPLY: u8 = 1;
@@ -77,31 +78,69 @@ impl<'a, const KINDS: u8> Acting<'a, KINDS> {
 }
 
 /// The kinds of the effects that are attached to hooks.
+///
+/// Every hook is named, so that one that is added later cannot be left out.
 #[must_use]
 pub fn kinds(hooks: &EffectHooks) -> u8 {
-    let supply = hooks.compensator_lag_s != 0.0
-        || hooks.margin_lost_to_flow_pa_s_m3 != 0.0
-        || hooks.idle_extra_pa != 0.0
-        || hooks.cracking_extra_pa != 0.0
-        || !hooks.check_valve.is_free()
-        || !(hooks.margin.is_empty() && hooks.pump_slip.is_empty())
-        || hooks.relief.is_some();
-    let piston = hooks.inertia_share != 0.0
-        || hooks.shaft_inertia_kg_m2 != 0.0
-        || !(hooks.friction.is_empty() && hooks.weight_factor.is_empty())
-        || hooks.bristles.is_some()
-        || hooks.ground.is_some();
-    let oil = hooks.hose != EffectHooks::NONE.hose
-        || !hooks.return_line.is_free()
-        || !(hooks.leakage.is_empty() && hooks.stiffness_factor.is_empty())
-        || !(hooks.lower_drop_factor.is_empty() && hooks.lower_travel_factor.is_empty())
-        || hooks.flow_number_1_a_sqrt_pa.is_some();
-    let own = match hooks.terms.is_empty() {
-        true => 0,
-        false => EVERY,
-    };
-    let kind = |acts: bool, kind: u8| if acts { kind } else { 0 };
-    own | kind(supply, SUPPLY) | kind(piston, PISTON) | kind(oil, OIL)
+    let EffectHooks {
+        // Outside of the innermost loop.
+        currents: _,
+        lift_flow_factor: _,
+        lower_flow_factor: _,
+        spool_lag_extra_s: _,
+        longest_step_s: _,
+        largest_change_a: _,
+        sensors: _,
+        margin,
+        idle_extra_pa,
+        margin_lost_to_flow_pa_s_m3,
+        compensator_lag_s,
+        cracking_extra_pa,
+        check_valve,
+        pump_slip,
+        relief,
+        friction,
+        bristles,
+        weight_factor,
+        inertia_share,
+        shaft_inertia_kg_m2,
+        ground,
+        leakage,
+        stiffness_factor,
+        hose,
+        return_line,
+        lower_drop_factor,
+        lower_travel_factor,
+        flow_number_1_a_sqrt_pa,
+        terms,
+    } = hooks;
+    let no_supply = [
+        *idle_extra_pa,
+        *margin_lost_to_flow_pa_s_m3,
+        *compensator_lag_s,
+        *cracking_extra_pa,
+    ] == [0.0; 4]
+        && margin.is_empty()
+        && check_valve.is_free()
+        && pump_slip.is_empty()
+        && relief.is_none();
+    let no_piston = [*inertia_share, *shaft_inertia_kg_m2] == [0.0; 2]
+        && friction.is_empty()
+        && bristles.is_none()
+        && weight_factor.is_empty()
+        && ground.is_none();
+    let no_oil = *hose == Hose::STIFF
+        && leakage.is_empty()
+        && stiffness_factor.is_empty()
+        && return_line.is_free()
+        && lower_drop_factor.is_empty()
+        && lower_travel_factor.is_empty()
+        && flow_number_1_a_sqrt_pa.is_none();
+    let unless = |absent: bool, kinds: u8| if absent { 0 } else { kinds };
+    unless(no_supply, SUPPLY)
+        | unless(no_piston, PISTON)
+        | unless(no_oil, OIL)
+        | unless(terms.is_empty(), EVERY)
 }
 
 /// Evaluates an expression with a constant equal to the kinds in a variable.
