@@ -169,12 +169,13 @@ impl Hose {
         }
     }
 
-    /// Rate of the lag of its wall behind the pressure, Pa/s, at a rate of the pressure, Pa/s.
+    /// Rate of the lag of its wall behind the pressure, Pa/s, at a rate of the pressure, Pa/s; zero without creep, so that
+    /// a plant without hoses may come to rest at any pressure.
     #[inline(always)]
     #[must_use]
     pub fn behind_pa_s(&self, pressure_pa_s: f64, behind_pa: f64) -> f64 {
         match self.catching_up_1_s == 0.0 {
-            true => pressure_pa_s,
+            true => 0.0,
             false => pressure_pa_s - self.catching_up_1_s * behind_pa,
         }
     }
