@@ -11,7 +11,7 @@ use crate::import::manifest::{Log, campaign, path_from};
 use crate::import::{Columns, Conditions, Files, dialogue, load_in_name};
 use crate::model_arg::ModelArg;
 use crate::output;
-use crate::text::wrapped;
+use crate::text::{shell_word, wrapped};
 
 /// Arguments of `hitch import`.
 #[derive(Debug, clap::Args)]
@@ -133,7 +133,7 @@ fn told(args: &Args, notes: &[String], runs: &[Run]) -> String {
     text + &format!(
         "{}: written\nnext: hitch compare {}{}\n",
         args.out.join("campaign.toml").display(),
-        args.out.display(),
+        shell_word(&args.out),
         args.model.written()
     )
 }

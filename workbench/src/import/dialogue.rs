@@ -140,11 +140,30 @@ fn shown(found: &Columns, mapping: &Mapping) -> String {
     for note in found.notes.iter().chain(&mapping.notes) {
         text += &(indented(note, 2) + "\n");
     }
-    match found.columns.len().saturating_sub(mapping.taken.len()) {
+    let is_taken = |name: &str| {
+        let mut taken = mapping.taken.iter();
+        taken.any(|taken| taken.source == name || taken.source.starts_with(&format!("{name}:")))
+    };
+    let columns = found.columns.iter().map(|column| column.name.as_str());
+    let others: Vec<&str> = columns.filter(|name| !is_taken(name)).collect();
+    match others.len() {
         0 => text,
-        1 => text + "  1 other column is ignored\n",
-        others => text + &format!("  {others} other columns are ignored\n"),
+        count => text + &indented(&left_out(count, &others), 2) + "\n",
     }
+}
+
+/// Most columns that are named.
+const MOST_NAMED: usize = 12;
+
+/// A sentence about the columns that are not taken.
+fn left_out(count: usize, names: &[&str]) -> String {
+    let what = match count {
+        1 => "1 other column is ignored".to_owned(),
+        _ => format!("{count} other columns are ignored"),
+    };
+    let named = names[..count.min(MOST_NAMED)].join(", ");
+    let more = if count > MOST_NAMED { ", ..." } else { "" };
+    format!("{what}: {named}{more}")
 }
 
 /// A column with its source and the reason, in several lines if it is too long.

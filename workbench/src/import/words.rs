@@ -149,7 +149,16 @@ impl Words {
         if has(self.not) {
             return 0;
         }
-        let score = i32::from(has(self.quantity)) + 2 * i32::from(has(self.which));
+        // German compounds: Öltemperatur.
+        let joined = |word: &String| {
+            let mut heads = self.which.iter();
+            heads.any(|head| {
+                let tail = word.strip_prefix(head);
+                tail.is_some_and(|tail| self.quantity.contains(&tail))
+            })
+        };
+        let is_told = has(self.which) || words.iter().any(joined);
+        let score = i32::from(has(self.quantity)) + 2 * i32::from(is_told);
         score - 4 * i32::from(has(&NO_MEASUREMENT))
     }
 
@@ -193,6 +202,7 @@ mod tests {
             ("Volumenstrom", "flow_lpm"),
             ("Winkel Hubwelle", "rocker_angle_deg"),
             ("Öltemperatur Tank", "oil_temperature_c"),
+            ("Oeltemperatur", "oil_temperature_c"),
         ] {
             assert_eq!(best(name), expected, "{name}");
         }

@@ -11,6 +11,7 @@ use super::{flow_curve, linkage_table};
 use crate::error::Error;
 use crate::output;
 use crate::outputs::Outputs;
+use crate::text::shell_word;
 
 /// Arguments of `hitch model new`.
 #[derive(Debug, clap::Args)]
@@ -146,10 +147,11 @@ pub fn run(args: &Args) -> Result<(), Error> {
 }
 
 fn told(path: &Path) -> String {
-    let path = path.display();
     format!(
-        "{path}: written; check it against your data sheets\n\
-        next: hitch compare CAMPAIGN --model {path}\n"
+        "{}: written; check it against your data sheets\n\
+        next: hitch compare CAMPAIGN --model {}\n",
+        path.display(),
+        shell_word(path)
     )
 }
 
