@@ -170,7 +170,11 @@ def own_term(page: Page, pictures: Path) -> None:
 
 
 def automatic(page: Page, pictures: Path) -> None:
-    """Explains, and takes the steps over."""
+    """Explains, cancelled at first, and takes the steps over."""
+    page.click("#explain")
+    page.click("#cancel")
+    expect(page.get_by_text("Verdict: ")).to_be_visible(timeout=30_000)
+    expect(page.locator("#job")).to_be_hidden()
     page.click("#explain")
     page.wait_for_selector("#adopt")
     settled(page)

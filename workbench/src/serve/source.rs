@@ -49,12 +49,16 @@ impl Source {
         };
         let baseline = Campaign::load_with(folder, self.model.linkage())?;
         let since = Since::new(&baseline, self.model.clone());
-        let (experiment, name) = (since.subtracted_from(&campaign), &baseline.name);
+        let experiment = since.subtracted_from(&campaign);
+        let beside = format!(
+            "Measured values are less what the model leaves on {} in like states",
+            baseline.name
+        );
         Ok(Subject {
-            description: format!(
-                "{} Measured values are less what the model leaves on {name}, where that has the same states.",
-                campaign.description
-            ),
+            description: match campaign.description.trim_end_matches('.') {
+                "" => beside,
+                own => format!("{own}. {beside}"),
+            },
             start: Arc::new(Evaluated::prepared(experiment, &since.model)),
             model: since.model,
         })

@@ -306,9 +306,10 @@ byId("fit").addEventListener("click", () => acts.run({ task: "fit" }));
 byId("rank").addEventListener("click", () => acts.run({ task: "rank" }));
 byId("explain").addEventListener("click", () => acts.run({ task: "explain" }));
 byId("cancel").addEventListener("click", guarded(async () => {
-  leave();
   await post("cancel", {});
   await refresh();
+  // An explanation ends with its best so far, which is still to come.
+  if (!state.job) leave();
 }));
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   if (!view) return;

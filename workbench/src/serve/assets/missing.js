@@ -106,7 +106,9 @@ function explanation(found, keeps, run) {
   } }, "Accept the selected steps");
   const parts = found.steps.map((step, index) => accepted(step, boxes[index]));
   return [element("h3", {}, "Explanation"),
-    element("p", {}, element("strong", {}, `Verdict: ${found.verdict}. `), found.meaning), ...(keeps ? [element("p", {},
+    element("p", {}, element("strong", {}, `Verdict: ${found.verdict}. `), found.meaning),
+    ...(found.unfinished ? [element("p", {}, "The search ended before its result was stable: there may be more effects.")] : []),
+    ...(keeps ? [element("p", {},
       "Effects of the model are kept; only their sizes may change. Remove an effect to have it re-examined.")] : []),
     ...(found.constants ? [constants(found.constants)] : []),
     ...parts,

@@ -127,6 +127,8 @@ interface Explained {
   meaning: string;
   constants: Constants | null;
   steps: ExplainedStep[];
+  /** Whether the search ended, at its limit or cancelled, before its result was stable. */
+  unfinished: boolean;
   /** Why effects that reduce the error are not named, a sentence each. */
   doubtful: string[];
   suggested: Suggested | null;

@@ -97,6 +97,7 @@ fn found(explained: &Explained) -> Value {
         "meaning": shown.meaning(),
         "constants": shown.corrected_constants.as_ref().map(|corrected| constants(corrected, shown.head.error_before)),
         "steps": steps.map(step).collect::<Vec<_>>(),
+        "unfinished": shown.unfinished,
         "doubtful": shown.doubtful.iter().map(Step::doubt).collect::<Vec<_>>(),
         "suggested": shown.unexplained.suggested,
         "not_visible": shown.not_visible.iter().map(|effect| effect.effect).collect::<Vec<_>>(),
