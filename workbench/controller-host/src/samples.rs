@@ -72,6 +72,15 @@ pub fn inputs(
         reference: None,
         set_point: None,
         clock_ratio: None,
+        // No columns yet.
+        left_pin: None,
+        right_pin: None,
+        ground_speed: None,
+        wheel_speed: None,
+        draft_set_point: None,
+        mix: None,
+        slip_limit: None,
+        function: None,
         enable_line_fault: false,
         switches: Switches {
             transport_lock,
