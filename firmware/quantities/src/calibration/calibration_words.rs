@@ -6,6 +6,7 @@ use super::design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
+use super::field_parameters::{DraftParameters, SlipParameters};
 use super::linkage::LINKAGE_POINTS;
 use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
 use super::valve_table::{VALVE_POINTS, ValveTable};
@@ -53,7 +54,7 @@ const fn full_name(group: &str, name: &str) -> u32 {
 }
 
 /// The groups in the order of the block.
-pub const GROUPS: [Group; 14] = [
+pub const GROUPS: [Group; 16] = [
     group::<HydraulicParameters>(),
     group::<SensorParameters>(),
     group::<LockParameters>(),
@@ -67,6 +68,8 @@ pub const GROUPS: [Group; 14] = [
     group::<CurrentParameters>(),
     group::<BusParameters>(),
     group::<RemoteParameters>(),
+    group::<DraftParameters>(),
+    group::<SlipParameters>(),
     group::<SafetyParameters>(),
 ];
 
@@ -392,6 +395,8 @@ impl Calibration {
             .or_else(|| of(&self.current, at))
             .or_else(|| of(&self.bus, at))
             .or_else(|| of(&self.remote, at))
+            .or_else(|| of(&self.draft, at))
+            .or_else(|| of(&self.slip, at))
             .or_else(|| of(&self.safety, at))
     }
 

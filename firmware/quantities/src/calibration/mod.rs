@@ -6,6 +6,7 @@
 pub mod calibration_words;
 pub mod class;
 pub mod design_parameters;
+pub mod field_parameters;
 pub mod linkage;
 pub mod nominal;
 pub mod parameter;
@@ -20,12 +21,13 @@ use design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
+use field_parameters::{DraftParameters, SlipParameters};
 use linkage::{LINKAGE_POINTS, LinkageTable};
 use parameter::{OutOfRange, ParameterGroup};
 use valve_table::{VALVE_POINTS, ValveTable};
 
 /// Layout of the block that this firmware reads.
-pub const CALIBRATION_VERSION: u32 = 5;
+pub const CALIBRATION_VERSION: u32 = 6;
 
 /// Largest flow in a table: ten times the pump's, and far from where products saturate.
 const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
@@ -69,6 +71,10 @@ pub struct Calibration {
     pub bus: BusParameters,
     /// Remote control by an implement.
     pub remote: RemoteParameters,
+    /// Draft pins and draft control.
+    pub draft: DraftParameters,
+    /// Slip guard.
+    pub slip: SlipParameters,
     /// Safety envelope.
     pub safety: SafetyParameters,
     /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
@@ -205,6 +211,8 @@ impl Calibration {
             current: CurrentParameters::NOMINAL,
             bus: BusParameters::NOMINAL,
             remote: RemoteParameters::NOMINAL,
+            draft: DraftParameters::NOMINAL,
+            slip: SlipParameters::NOMINAL,
             safety: SafetyParameters::NOMINAL,
             checksum: 0,
         }
@@ -425,6 +433,8 @@ impl Calibration {
         self.current.visit(visit);
         self.bus.visit(visit);
         self.remote.visit(visit);
+        self.draft.visit(visit);
+        self.slip.visit(visit);
         self.safety.visit(visit);
         visit_unsigned(&mut self.checksum, visit);
     }
