@@ -45,7 +45,7 @@ impl DraftSignal {
         ];
         let still = still.into_iter().max().unwrap_or_default();
         match forces(inputs, parameters) {
-            Ok(draft) if !self.in_soil || still < parameters.check_time => {
+            Ok(draft) if !self.in_soil || still < parameters.still_time => {
                 self.plausible(draft, moves, parameters)
             }
             Ok(_) => self.implausible(Trouble::PinFrozen, still >= parameters.frozen_time),
@@ -112,9 +112,12 @@ fn forces(inputs: &Inputs, parameters: &DraftParameters) -> Result<Newton, Troub
     let (Some(left), Some(right)) = (left, right) else {
         return Err(Trouble::PinRange);
     };
-    match (left - right).magnitude() > parameters.difference {
+    let draft = left + right;
+    let share = parameters.difference_share.0;
+    let allowed = parameters.difference + draft.magnitude().scaled(share, Divisor::THOUSAND);
+    match (left - right).magnitude() > allowed {
         true => Err(Trouble::PinsDisagree),
-        false => Ok(left + right),
+        false => Ok(draft),
     }
 }
 
@@ -230,7 +233,7 @@ mod tests {
             .map(|_| pins.signal.step(&inputs, false, &PARAMETERS))
             .collect();
         assert!(matches!(drafts[10], Draft::Measured(_)));
-        assert!(drafts[60..450].iter().all(|draft| *draft == Draft::Suspect));
+        assert!(drafts[30..450].iter().all(|draft| *draft == Draft::Suspect));
         assert_eq!(drafts[599], Draft::Lost(Trouble::PinFrozen));
     }
 

@@ -116,6 +116,7 @@ impl ReferenceControl {
             lever: situation.lever,
             angle: situation.angle,
             present,
+            aim: self.used.map_or(situation.lever, |_| self.stepped),
         };
         let was_slipping = self.reason == Some(Reason::Slip);
         self.active = match self.active {
@@ -125,7 +126,7 @@ impl ReferenceControl {
         };
         self.note_trouble(draft, slip, choice.function);
         let slip = slip.ok().flatten();
-        self.demand(&choice, slip, gains, situation, calibration)
+        self.demand(&choice, slip, (gains, mix), situation, calibration)
     }
 
     /// The set point of the active function, limited, raised by the guard, no faster than the valves, and in steps.
@@ -133,15 +134,15 @@ impl ReferenceControl {
         &mut self,
         choice: &Choice,
         slip: Option<(PerMille, PerMille)>,
-        gains: Gains,
+        (gains, weight): (Gains, PerMille),
         situation: &Situation,
         calibration: &Calibration,
     ) -> MilliDegree {
         let (function, demand) = match (self.active, choice.errors) {
             (Active::Lever, _) => (None, situation.lever),
             (Active::Holds(hold), _) => (None, hold.set_point()),
-            // The pins are in doubt.
-            (Active::Draft(function, _), None) => (Some(function), choice.present),
+            // The pins are in doubt: a move ends.
+            (Active::Draft(function, _), None) => (Some(function), choice.here()),
             (Active::Draft(function, control), Some(errors)) => {
                 (Some(function), control.demand(errors, gains))
             }
@@ -166,7 +167,12 @@ impl ReferenceControl {
         if let (Active::Draft(_, control), Some(errors)) = (&mut self.active, choice.errors) {
             control.follow(errors, gains, demand, used);
         }
-        self.in_steps(used, calibration.draft.step)
+        let step = match self.active {
+            Active::Draft(..) if choice.errors.is_none() => MilliDegree::ZERO,
+            Active::Holds(_) if self.reason != Some(Reason::Slip) => MilliDegree::ZERO,
+            _ => calibration.draft.step.scaled(weight.0, Divisor::THOUSAND),
+        };
+        self.in_steps(used, step)
     }
 
     /// The set point in steps, so that position control makes one move of each.

@@ -52,6 +52,8 @@ pub struct Choice {
     pub angle: MilliDegree,
     /// Set point of the last step.
     pub present: MilliDegree,
+    /// The same in steps: where position control moves the hitch.
+    pub aim: MilliDegree,
 }
 
 impl Active {
@@ -84,10 +86,15 @@ impl Choice {
         Active::Draft(self.function, DraftLoop::from(self.present, errors, gains))
     }
 
-    /// The present depth.
+    /// The present depth, from now on.
     #[must_use]
     pub fn held(&self) -> Active {
-        let at = self.present.limited(self.angle - NEAR, self.angle + NEAR);
-        Active::Holds(Hold::new(at, self.lever))
+        Active::Holds(Hold::new(self.here(), self.lever))
+    }
+
+    /// The present depth: where position control moves the hitch, if that is near.
+    #[must_use]
+    pub fn here(&self) -> MilliDegree {
+        self.aim.limited(self.angle - NEAR, self.angle + NEAR)
     }
 }

@@ -25,13 +25,17 @@ parameter_group! {
         output_min: SupplyShare = 10_000, 1_000..=45_000;
         /// Largest output of a healthy pin: above it the wire is shorted.
         output_max: SupplyShare = 90_000, 55_000..=99_000;
-        /// Largest difference of the pins' forces: three quarters of 18 kN on one side, the rest on the other, less than a pin that shows no force.
-        difference: Newton = 8_500, 500..=320_000;
+        /// Largest difference of the pins' forces without a draft: zeros and noise.
+        difference: Newton = 2_000, 100..=100_000;
+        /// Part of the draft by which the pins may differ besides: three quarters on one side, the rest on the other. A pin without force differs by all of it.
+        difference_share: PerMille = 500, 0..=900;
         /// How long pins have to be implausible before they are lost. The draft is not used in this time.
         check_time: Millisecond = 50, 1..=1_000;
         /// How long pins have to be plausible before they are used again.
         healthy_time: Millisecond = 500, 1..=10_000;
-        /// How long a pin may stand still to the last bit under load: its noise is four steps of the converter.
+        /// How long a pin may stand still to the last bit under load and is used: a healthy one, whose noise is four steps of the converter, repeats one sample in ten. At the fastest speed the hitch moves 2 degrees in it.
+        still_time: Millisecond = 20, 5..=1_000;
+        /// After which time it is lost.
         frozen_time: Millisecond = 500, 50..=10_000;
         /// Low-pass on the draft in work: a wavelength of 0.56 m at 1.8 m/s (US 5143159).
         work_filter: MilliHertz = 3_200, 100..=50_000;
@@ -41,16 +45,16 @@ parameter_group! {
         soil_draft: Newton = 1_500, 100..=100_000;
         /// Change of the draft with the angle: 0.73 kN/cm in loam at 0.9 cm a degree.
         force_per_degree: NewtonPerDegree = 650, 10..=50_000;
-        /// Crossover of the draft loop: a fifth of a hertz, a tenth of the bandwidth of position control.
-        crossover: MilliHertz = 200, 50..=300;
+        /// Crossover of the draft loop: soil that becomes twice as hard is compensated within 2 s, and position control is several times as fast.
+        crossover: MilliHertz = 300, 50..=300;
         /// Distance over which the implement follows the links, whose lag the loop compensates: its own length. 0 compensates nothing.
         length: Millimetre = 1_500, 0..=5_000;
         /// Speed that is assumed where the ground speed is not known.
         assumed_speed: MillimetrePerSecond = 1_800, 300..=6_000;
         /// Deviation of the draft from its set point that moves nothing.
         dead_band: PerMille = 20, 0..=200;
-        /// Smallest change of the set point of position control, twice the band within which a hitch at rest stays: one move for each.
-        step: MilliDegree = 700, 0..=5_000;
+        /// Smallest change of the set point of position control, one move for each: a sixth of the depth. In loam half of it moves the hitch twice as often, and takes another 3 % off the deviation of the draft. In mix it is weighted as the draft. Below `margin`, or the hitch does not go below the lever.
+        step: MilliDegree = 4_500, 0..=10_000;
         /// How far below the lever draft and mix may lower the hitch: 4.5 cm. The lever raises the implement out of the soil in any function.
         margin: MilliDegree = 5_000, 0..=30_000;
     }
@@ -71,8 +75,8 @@ parameter_group! {
         filter: MilliHertz = 800, 100..=10_000;
         /// Change of the slip with the angle, on a soft patch.
         slip_per_degree: PerMille = 13, 1..=200;
-        /// Crossover of the guard: above that of draft control, which lowers where the guard raises.
-        crossover: MilliHertz = 250, 50..=500;
+        /// Crossover of the guard: that of draft control, as the implement follows both with the same lag.
+        crossover: MilliHertz = 300, 50..=500;
         /// How far the guard may raise the hitch: 13 cm, half of the depth.
         most_raise: MilliDegree = 15_000, 500..=45_000;
         /// Averaging time of the rolling radius, above the ground.
