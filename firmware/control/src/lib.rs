@@ -15,7 +15,7 @@
 //! * [`valve`]: valve curves and their inverse, closing of the valves, demand and phase,
 //! * [`sensing`]: validation of the sensors,
 //! * [`operator`]: lever, button, dials and switches, the start-up lock, and the mode that follows from them,
-//! * [`reference`]: draft, mix, depth limit and slip guard: the set point that they make of the lever,
+//! * [`reference`](mod@reference): draft, mix, depth limit and slip guard: the set point that they make of the lever,
 //! * [`estimation`]: observers of motion, load and valve dynamics,
 //! * [`adaptation`]: adaptation of the valve model by the moves of this machine,
 //! * [`motion`]: position and rate law, from a set point or a button to a demanded speed,
