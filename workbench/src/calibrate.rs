@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use hitch_controller::Controller;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
-use hitch_plant::{Constants, Dynamics, Model, OrificeValve, Solenoid, Valve};
+use hitch_plant::{AddedEffect, Constants, Dynamics, Model, OrificeValve, Solenoid, Valve};
 use hitch_quantities::calibration::design_parameters::CurrentParameters;
 use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
 use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
@@ -15,6 +15,9 @@ use hitch_quantities::units::{
 use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
 use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, largest_current_a, survey};
+
+pub mod carried;
+mod dynamics;
 
 /// Tolerance of a valve table relative to the surveyed curve, A.
 const TOLERANCE_A: f64 = 0.5e-3;
@@ -99,6 +102,7 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     if let Some(lag_s) = found(model, "angle-sensor-lag") {
         calibration.sensors.angle_lag = Millisecond((lag_s * 1e3).round() as i32);
     }
+    dynamics::adapt(model, &mut calibration);
     calibration
         .sealed()
         .validate()
@@ -166,9 +170,16 @@ fn current_regulation(solenoid: &Solenoid, current: &mut CurrentParameters) {
     current.settling_time = Millisecond(settling_ms.ceil() as i32).min(LONGEST_SETTLING);
 }
 
-/// First parameter of an effect of the model.
+/// First parameter of an effect of the model, in any form.
 fn found(model: &Model, id: &str) -> Option<f64> {
     let added = model.effects.iter().find(|added| added.effect.id() == id)?;
+    added.values.first().copied()
+}
+
+/// First parameter of an effect of the model in one form.
+fn found_in(model: &Model, id: &str, form: Option<&str>) -> Option<f64> {
+    let is_it = |added: &&AddedEffect| (added.effect.id(), added.effect.form()) == (id, form);
+    let added = model.effects.iter().find(is_it)?;
     added.values.first().copied()
 }
 
@@ -380,7 +391,7 @@ mod tests {
         let flows = curve.flows_m3_s().to_vec();
         *curve = hitch_plant::ValveCurve::new(currents.collect(), flows).unwrap();
         let shift = hitch_effects::find("lift-threshold-shift").unwrap();
-        let mut shift = hitch_plant::AddedEffect::typical(shift);
+        let mut shift = AddedEffect::typical(shift);
         shift.values[0] = 0.2;
         let model = dynamic.with_constants(constants).unwrap();
         let shut = calibrate(&model.with_effects(vec![shift]), &Calibration::nominal());

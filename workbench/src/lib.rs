@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod base_fit;
+pub mod baseline_arg;
 pub mod calibrate;
 pub mod cli;
 pub mod closed_loop;

@@ -7,6 +7,7 @@ use hitch_identification::explanation::starting_point::StartingPoint;
 use hitch_plant::{Dynamics, Model};
 
 use crate::error::Error;
+use crate::text::shell_word;
 
 /// The model without the option, and the same with dynamics.
 const NOMINAL: &str = "nominal";
@@ -33,12 +34,18 @@ impl ModelArg {
         self.name.as_deref().unwrap_or(NOMINAL)
     }
 
+    /// The name as one word of a command line.
+    #[must_use]
+    pub fn word(&self) -> String {
+        shell_word(self.name().as_ref())
+    }
+
     /// The option as written on a command line; empty for the default model.
     #[must_use]
     pub fn written(&self) -> String {
         match &self.name {
             None => String::new(),
-            Some(name) => format!(" --model {name}"),
+            Some(_) => format!(" --model {}", self.word()),
         }
     }
 

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use crate::baseline_arg::BaselineArg;
 use crate::model_arg::ModelArg;
-use crate::text::wrapped;
+use crate::text::{shell_word, wrapped};
 
 /// File names of the proposed commands.
 const MODEL: &str = "better.toml";
@@ -24,12 +25,27 @@ pub enum Standing {
 /// After `hitch compare` and `hitch diagnose`: the valve map of an adequate model, the missing effects of an inadequate one,
 /// or the fit of its base.
 #[must_use]
-pub fn next(standing: Standing, campaign: &Path, model: &ModelArg) -> String {
+pub fn next(
+    standing: Standing,
+    campaign: &Path,
+    model: &ModelArg,
+    baseline: &BaselineArg,
+) -> String {
     match standing {
-        Standing::Adequate => calibrate(model.name()),
-        Standing::Inadequate => explain(campaign, model),
+        Standing::Adequate => calibrate(&model.word()),
+        Standing::Inadequate => line(
+            "find the missing effects",
+            &format!(
+                "{} --out {MODEL} --report {REPORT}",
+                explain(campaign, model, baseline)
+            ),
+        ),
         Standing::UnsuitableBase => {
-            let fit = format!("hitch model fit {}{}", path(campaign), model.written());
+            let fit = format!(
+                "hitch model fit {}{}",
+                shell_word(campaign),
+                model.written()
+            );
             line("fit the base model", &format!("{fit} --out {MODEL}"))
         }
     }
@@ -37,22 +53,24 @@ pub fn next(standing: Standing, campaign: &Path, model: &ModelArg) -> String {
 
 /// After `hitch explain`: the valve map of the written model; without one, the command that writes it.
 #[must_use]
-pub fn after_explanation(written: Option<&Path>, campaign: &Path, model: &ModelArg) -> String {
+pub fn after_explanation(
+    written: Option<&Path>,
+    campaign: &Path,
+    model: &ModelArg,
+    baseline: &BaselineArg,
+) -> String {
     match written {
-        Some(file) => calibrate(&path(file)),
-        None => {
-            let again = format!("hitch explain {}{}", path(campaign), model.written());
-            line("save the model", &format!("{again} --out {MODEL}"))
-        }
+        Some(file) => calibrate(&shell_word(file)),
+        None => line(
+            "save the model",
+            &format!("{} --out {MODEL}", explain(campaign, model, baseline)),
+        ),
     }
 }
 
-fn explain(campaign: &Path, model: &ModelArg) -> String {
-    let command = format!("hitch explain {}{}", path(campaign), model.written());
-    line(
-        "find the missing effects",
-        &format!("{command} --out {MODEL} --report {REPORT}"),
-    )
+fn explain(campaign: &Path, model: &ModelArg, baseline: &BaselineArg) -> String {
+    let (campaign, model) = (shell_word(campaign), model.written());
+    format!("hitch explain {campaign}{model}{}", baseline.written())
 }
 
 fn calibrate(model: &str) -> String {
@@ -65,10 +83,4 @@ fn calibrate(model: &str) -> String {
 /// The command stands in a line of its own, so that it can be copied.
 fn line(purpose: &str, command: &str) -> String {
     format!("{}\n  {command}\n", wrapped(&format!("Next, {purpose}:")))
-}
-
-/// A path as one word of a shell.
-fn path(path: &Path) -> String {
-    let text = path.to_string_lossy();
-    shlex::try_quote(&text).map_or_else(|_| text.to_string(), |quoted| quoted.into_owned())
 }

@@ -1,11 +1,15 @@
 //! Options of a search for missing effects.
 
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use hitch_identification::data::limit::Limit;
 use hitch_identification::search::subset::Options;
 
 use crate::interruption::requested;
+
+/// Time after which a search ends, s, unless another one is given.
+pub const BUDGET_S: f64 = 60.0;
 
 /// Arguments of a search.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -14,22 +18,27 @@ pub struct SearchArgs {
     #[arg(long)]
     frozen: bool,
     /// End after this time with the best account so far, s; Ctrl-C ends it at once
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "60")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value_t = BUDGET_S)]
     budget: f64,
 }
 
 impl SearchArgs {
     /// The options of a search that starts now.
     pub fn options(&self) -> Options<'static> {
-        let budget = Duration::from_secs_f64(self.budget);
         Options {
             changes: !self.frozen,
-            limit: Limit {
-                deadline: Some(Instant::now() + budget),
-                requested: requested(),
-            },
+            limit: limit(self.budget, requested()),
             ..Options::default()
         }
+    }
+}
+
+/// The limit of a search that starts now: a time, s, and a request to end it.
+#[must_use]
+pub fn limit(budget_s: f64, requested: Option<&AtomicBool>) -> Limit<'_> {
+    Limit {
+        deadline: Some(Instant::now() + Duration::from_secs_f64(budget_s)),
+        requested,
     }
 }
 

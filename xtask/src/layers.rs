@@ -115,6 +115,7 @@ const CRATES: [Layers; 9] = [
             &[
                 "interruption",
                 "model_arg",
+                "baseline_arg",
                 "effect_arg",
                 "search_args",
                 "input_stream",

@@ -1,7 +1,7 @@
 //! The observer behind an angle sensor that lags, against the closed forms of its equations.
 
 use hitch_control::estimation::delayed_output::{
-    DelayedOutput, LaggingAngle, position_correction_nm,
+    DelayedOutput, LaggingAngle, Pole, position_correction_nm,
 };
 use hitch_control::estimation::motion_observer::MotionObserver;
 use hitch_control::valve::phase::{Direction, Phase};
@@ -170,12 +170,14 @@ fn a_forgotten_output_starts_as_a_new_one() {
         linkage: &calibration.linkage,
     };
     let mut used = DelayedOutput::default();
-    (0..50).for_each(|step| _ = used.compare(&shown(90_000 + 60 * step), Micrometre(START)));
+    (0..50).for_each(|step| {
+        _ = used.compare(&shown(90_000 + 60 * step), Micrometre(START), Pole::USUAL)
+    });
     used.forget();
     let mut new = DelayedOutput::default();
     assert_eq!(
-        used.compare(&shown(100_000), Micrometre(START)),
-        new.compare(&shown(100_000), Micrometre(START))
+        used.compare(&shown(100_000), Micrometre(START), Pole::USUAL),
+        new.compare(&shown(100_000), Micrometre(START), Pole::USUAL)
     );
 }
 
@@ -197,12 +199,12 @@ fn the_longest_lag_is_stable_at_the_largest_speeds() {
                 lag: Millisecond(LAG_MS),
                 linkage,
             };
-            let error = output.compare(&shown, Micrometre(START));
+            let error = output.compare(&shown, Micrometre(START), Pole::USUAL);
             assert!(
                 f64::from(error).abs() <= most_um_ms,
                 "{period}: {error} um ms"
             );
-            assert!(position_correction_nm(error).abs() <= i32::MAX / 2);
+            assert!(position_correction_nm(error, Pole::USUAL).abs() <= i32::MAX / 2);
             error
         };
         for step in 0..10_000 {

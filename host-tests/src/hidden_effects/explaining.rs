@@ -35,8 +35,7 @@ impl Method for Explaining {
 
     fn answer_since(&self, baseline: &Campaign, campaign: &Campaign, model: &Model) -> Answer {
         let since = Since::new(baseline, model.clone());
-        let (experiment, options) = since.posed(campaign, Options::default());
-        answer(&experiment, model, options)
+        answer(&since.subtracted_from(campaign), model, Options::default())
     }
 }
 

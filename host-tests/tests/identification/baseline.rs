@@ -45,11 +45,7 @@ fn subtracted(case: &Case) -> (Experiment, Model) {
 
 fn changes(case: &Case) -> Explanation {
     let (experiment, model) = subtracted(case);
-    let options = Options {
-        constants: Accuracy::Adopted,
-        ..Options::default()
-    };
-    let found = explain_with(Problem::new(&experiment, &model), options, &|_| {});
+    let found = explain(Problem::new(&experiment, &model), &|_| {});
     println!(
         "error {:.2} to {:.2}",
         found.before.error(),

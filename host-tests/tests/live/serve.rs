@@ -211,6 +211,26 @@ fn a_suggested_term_is_taken_over() {
 }
 
 #[test]
+fn a_cancelled_explanation_keeps_the_best_so_far() {
+    let dir = TempDir::new().unwrap();
+    let server = PageServer::start(dir.path(), &[]);
+    let session = server.begin();
+    let explain = json!({ "session": session, "task": "explain" });
+    assert_eq!(server.post("api/start", &explain).status, 200);
+    let of = json!({ "session": session });
+    assert_eq!(server.post("api/cancel", &of).status, 200);
+    let ended = server.settled(&session);
+    assert!(ended["explained"]["verdict"].is_string(), "{ended}");
+    // Cancelled twice, it is given up.
+    assert_eq!(server.post("api/start", &explain).status, 200);
+    for _ in 0..2 {
+        assert_eq!(server.post("api/cancel", &of).status, 200);
+    }
+    assert_eq!(server.post("api/start", &explain).status, 200);
+    assert!(server.settled(&session)["explained"]["verdict"].is_string());
+}
+
+#[test]
 fn a_cancelled_ranking_leaves_the_session_usable() {
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &[]);

@@ -9,6 +9,7 @@ mod extra_travel;
 mod flooded_bus;
 mod from_measurement_to_motion;
 mod frozen_angle;
+mod identified_dynamics;
 mod position;
 mod power_cut;
 mod rate;

@@ -265,6 +265,26 @@ fn bristles_in_motion_are_dry_friction() {
     }
 }
 
+/// What dry friction can hold: the full force of each law, over the piston's area; a viscous force holds nothing.
+#[test]
+fn a_stuck_piston_carries_the_force_of_dry_friction() {
+    let rig = Rig::Hitch(HitchRig {
+        load_kg: 150.0,
+        start_angle_rad: 90f64.to_radians(),
+    });
+    let held_n = |name: &str, values: &[f64]| {
+        let model = model(name, values);
+        let plant = Plant::new(&model, rig, 40.0, Currents::default());
+        plant.dry_friction_pa() * model.constants().cylinder.area_m2()
+    };
+    let smooth_n = held_n("coulomb-friction", &[450.0]);
+    assert!((smooth_n - 450.0).abs() < 0.01 * 450.0, "{smooth_n} N");
+    let bristles_n = held_n("coulomb-friction/bristles", &[450.0, 0.3, 0.0]);
+    assert!((bristles_n - 450.0).abs() < 1e-9, "{bristles_n} N");
+    let viscous_n = held_n("viscous-friction", &[9000.0]);
+    assert!(viscous_n < 1e-6, "{viscous_n} N");
+}
+
 /// A margin that decreases with the flow: `Q^2 / Q_table^2 = (drop - k Q) / drop`, a quadratic equation in the flow.
 #[test]
 fn a_compensator_that_droops_with_the_flow_leaves_the_flow_of_a_quadratic() {

@@ -7,15 +7,16 @@ use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::estimation::fit::{Fit, refine};
-use hitch_identification::explanation::explain::fit_freely;
+use hitch_identification::explanation::explain::fit_base;
 use hitch_identification::search::single_effects::try_effects;
 use hitch_identification::selection::evidence::SIGNIFICANT;
 use hitch_identification::selection::leave_one_out::{LeaveOneOut, leave_one_out};
 use hitch_plant::{Effect, Model, full_name};
 
+use crate::baseline_arg::BaselineArg;
 use crate::effect_arg::find;
 use crate::error::Error;
-use crate::explanation::{HOPELESS_BASE, parameters, rebuilt};
+use crate::explanation::{Base, HOPELESS_BASE, Posed, parameters, rebuilt};
 use crate::model_arg::ModelArg;
 use crate::output;
 use crate::outputs::{Outputs, campaign_files};
@@ -36,6 +37,8 @@ pub struct Args {
     campaign: PathBuf,
     #[command(flatten)]
     model: ModelArg,
+    #[command(flatten)]
+    baseline: BaselineArg,
     /// Write the model to this file
     #[arg(long, value_name = "MODEL.toml")]
     out: PathBuf,
@@ -48,12 +51,17 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());
+    inputs.extend(args.baseline.files());
     let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
-    let effects = effects(&args.effects, &args.model.load()?)?;
-    let (model, campaign) = args.model.load_for(&args.campaign)?;
+    let start = Base::load(&args.model, &args.baseline)?;
+    let effects = effects(&args.effects, start.model())?;
+    let Posed {
+        model,
+        campaign,
+        experiment,
+    } = start.posed(&args.campaign)?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
-    let experiment = Experiment::new(&campaign, &model);
-    let base = fit_freely(Problem::new(&experiment, &model));
+    let base = fit_base(Problem::new(&experiment, &model));
     let fit = fit_with(&experiment, &model, base.clone(), &effects, &progress);
     progress.say("evaluating each effect with the others present");
     let weighed = leave_one_out(Problem::new(&experiment, &model), &fit, model.effects.len());

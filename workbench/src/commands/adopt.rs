@@ -3,18 +3,17 @@
 use std::path::PathBuf;
 
 use hitch_identification::constants::parameter::parameters;
-use hitch_identification::data::experiment::Experiment;
 use hitch_identification::search::subset::{Accuracy, Options};
 use hitch_plant::Model;
 
 use crate::error::Error;
-use crate::explanation::{Found, saving};
+use crate::explanation::{Base, Found, Posed, saving};
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::report::explanation_page;
 use crate::search_args::SearchArgs;
-use crate::text::wrapped;
+use crate::text::{shell_word, wrapped};
 
 /// Arguments of `hitch adopt`.
 #[derive(Debug, clap::Args)]
@@ -56,15 +55,17 @@ pub fn run(args: &Args) -> Result<(), Error> {
         args.json.target(),
     ];
     let outputs = Outputs::check(wanted, &inputs)?;
-    check_held(&args.hold, &args.model.load()?)?;
-    let (model, campaign) = args.model.load_for(&args.campaign)?;
+    let sheet = Base::Alone(&args.model, args.model.load()?);
+    let Posed {
+        model, experiment, ..
+    } = sheet.posed(&args.campaign)?;
+    check_held(&args.hold, &model)?;
     let improved = saving(&model, Some(&args.out));
     let options = Options {
         constants: Accuracy::DataSheet,
         exact: &args.hold,
         ..args.search.options()
     };
-    let experiment = Experiment::new(&campaign, &model);
     let found = Found::new(experiment, model, options, &improved);
     let adopted = found.rebuilt(output::stem(&args.out));
     output::write_file(&args.out, hitch_model_file::to_toml(&adopted).as_bytes())?;
@@ -74,8 +75,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     outputs.tell(&args.json, &found.shown, || {
         let next = format!(
             "Next, after a change: hitch explain NEW --model {} --baseline {}",
-            args.out.display(),
-            args.campaign.display()
+            shell_word(&args.out),
+            shell_word(&args.campaign)
         );
         format!("{}\n{}", found.shown, wrapped(&next))
     })

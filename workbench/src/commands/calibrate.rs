@@ -7,7 +7,7 @@ use hitch_quantities::Calibration;
 use hitch_quantities::calibration::valve_table::ValveTable;
 
 use super::loop_::read_files;
-use crate::calibrate::calibrate;
+use crate::calibrate::{calibrate, carried};
 use crate::error::Error;
 use crate::output;
 use crate::outputs::Outputs;
@@ -49,6 +49,9 @@ pub fn run(args: &Args) -> Result<(), Error> {
         ("lower", &calibration.lower, &base.lower),
     ] {
         let line = format!("{name}: {} (was {})", described(table), described(before));
+        text += &format!("{}\n", indented(&line, 2));
+    }
+    for line in carried::lines(&model, &base, &calibration) {
         text += &format!("{}\n", indented(&line, 2));
     }
     outputs.say(|| text)

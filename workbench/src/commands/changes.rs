@@ -138,7 +138,7 @@ impl Adopted {
         options: Options<'_>,
         progress: &Progress,
     ) -> (Changes, Found) {
-        let (experiment, options) = self.since.posed(new, options);
+        let experiment = self.since.subtracted_from(new);
         let model = self.since.model.clone();
         let new = Found::with_progress(experiment, model, options, &|_| {}, progress);
         let changes = Changes {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use hitch_campaign::Campaign;
 use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 
+use crate::baseline_arg::BaselineArg;
 use crate::commands::fleet::FleetArgs;
 use crate::comparison::Comparison;
 use crate::error::Error;
@@ -79,7 +80,7 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
         false => Standing::Inadequate,
     };
     outputs.tell(&args.json, &comparison, || {
-        let next = next_command::next(standing, folder, &args.model);
+        let next = next_command::next(standing, folder, &args.model, &BaselineArg::default());
         format!("{comparison}\n{next}")
     })
 }

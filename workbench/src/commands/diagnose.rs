@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::diagnosis::diagnose;
 use hitch_identification::explanation::explain::fit_base;
 
+use crate::baseline_arg::BaselineArg;
 use crate::error::Error;
-use crate::explanation::{Diagnosis, Head};
+use crate::explanation::{Base, Diagnosis, Head, Posed};
 use crate::model_arg::ModelArg;
 use crate::next_command::{self, Standing};
 use crate::output::{self, JsonArg};
@@ -25,6 +25,8 @@ pub struct Args {
     #[command(flatten)]
     model: ModelArg,
     #[command(flatten)]
+    baseline: BaselineArg,
+    #[command(flatten)]
     json: JsonArg,
     /// Write a report to this file: self-contained HTML
     #[arg(long, value_name = "FILE.html")]
@@ -38,10 +40,14 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());
+    inputs.extend(args.baseline.files());
     let outputs = Outputs::check([args.json.target(), args.report.as_deref()], &inputs)?;
-    let (model, campaign) = args.model.load_for(&args.campaign)?;
+    let Posed {
+        model,
+        campaign,
+        experiment,
+    } = Base::load(&args.model, &args.baseline)?.posed(&args.campaign)?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
-    let experiment = Experiment::new(&campaign, &model);
     let base = fit_base(Problem::new(&experiment, &model));
     let found = diagnose(Problem::new(&experiment, &model), base, &|what| {
         progress.say(format!("trying {what}"))
@@ -63,7 +69,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
             (false, "nothing-missing") => Standing::Adequate,
             (false, _) => Standing::Inadequate,
         };
-        let next = next_command::next(standing, &args.campaign, &args.model);
+        let next = next_command::next(standing, &args.campaign, &args.model, &args.baseline);
         format!("{shown}\n{next}")
     })
 }

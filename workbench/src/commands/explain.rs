@@ -2,12 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::Campaign;
-use hitch_identification::data::experiment::Experiment;
-
+use crate::baseline_arg::BaselineArg;
 use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
-use crate::explanation::{Found, Since, saving};
+use crate::explanation::{Base, Found, Posed, saving};
 use crate::model_arg::ModelArg;
 use crate::next_command;
 use crate::output::{self, JsonArg};
@@ -27,10 +25,8 @@ pub struct Args {
     campaigns: Vec<PathBuf>,
     #[command(flatten)]
     model: ModelArg,
-    /// Folder of the campaign that the model was adopted from: what the model leaves on it is subtracted, so that only
-    /// changes since then remain
-    #[arg(long, value_name = "CAMPAIGN")]
-    baseline: Option<PathBuf>,
+    #[command(flatten)]
+    baseline: BaselineArg,
     /// Write the model with the added effects to this file, updated during the search with the best model so far
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
@@ -62,67 +58,36 @@ pub fn run(args: &Args) -> Result<(), Error> {
 }
 
 fn many(args: &Args) -> Result<(), Error> {
-    let since = since(args)?;
-    let model = match &since {
-        Some(since) => since.model.clone(),
-        None => args.model.load()?,
-    };
-    let mut inputs = args.baseline.as_deref().map_or(Vec::new(), campaign_files);
+    let base = Base::load(&args.model, &args.baseline)?;
+    let mut inputs = args.baseline.files();
     inputs.push(args.model.file());
     args.fleet.run(&args.campaigns, &inputs, |folder| {
-        let campaign = Campaign::load_with(folder, model.linkage())?;
         // The time limit is that of a campaign: it starts here.
         let options = args.search.options();
-        let (model, experiment, options) = match &since {
-            Some(since) => {
-                let (experiment, options) = since.posed(&campaign, options);
-                (model.clone(), experiment, options)
-            }
-            None => {
-                let model = args.model.nearer(model.clone(), &campaign);
-                let experiment = Experiment::new(&campaign, &model);
-                (model, experiment, options)
-            }
-        };
+        let Posed {
+            model, experiment, ..
+        } = base.posed(folder)?;
         let progress = Progress::hidden();
         let found = Found::with_progress(experiment, model, options, &|_| {}, &progress);
         Ok(found.shown)
     })
 }
 
-/// The model beside the campaign of `--baseline`.
-fn since(args: &Args) -> Result<Option<Since>, Error> {
-    let folder = args.baseline.as_deref();
-    let loaded = folder
-        .map(|folder| args.model.load_for(folder))
-        .transpose()?;
-    Ok(loaded.map(|(model, campaign)| Since::new(&campaign, model)))
-}
-
 fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     let mut inputs = campaign_files(folder);
     inputs.push(args.model.file());
-    inputs.extend(args.baseline.as_deref().map_or(Vec::new(), campaign_files));
+    inputs.extend(args.baseline.files());
     let wanted = [
         args.out.as_deref(),
         args.report.as_deref(),
         args.json.target(),
     ];
     let outputs = Outputs::check(wanted, &inputs)?;
-    let since = since(args)?;
-    let (model, campaign) = match &since {
-        Some(Since { model, .. }) => {
-            let campaign = Campaign::load_with(folder, model.linkage())?;
-            (model.clone(), campaign)
-        }
-        None => args.model.load_for(folder)?,
-    };
-    let improved = saving(&model, args.out.as_deref());
     let options = args.search.options();
-    let (experiment, options) = match &since {
-        Some(since) => since.posed(&campaign, options),
-        None => (Experiment::new(&campaign, &model), options),
-    };
+    let Posed {
+        model, experiment, ..
+    } = Base::load(&args.model, &args.baseline)?.posed(folder)?;
+    let improved = saving(&model, args.out.as_deref());
     let found = Found::new(experiment, model, options, &improved);
     if let Some(path) = &args.out {
         output::write_file(
@@ -135,7 +100,7 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     }
     outputs.tell(&args.json, &found.shown, || {
         let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
-        let next = next_command::after_explanation(out, folder, &args.model);
+        let next = next_command::after_explanation(out, folder, &args.model, &args.baseline);
         format!("{}\n{next}", found.shown)
     })
 }

@@ -1,4 +1,5 @@
 //! Results of `hitch explain` and `hitch diagnose`, as JSON and as text.
+mod base;
 mod channel_figures;
 mod corrected;
 mod found;
@@ -10,6 +11,7 @@ mod rebuilt;
 mod show;
 mod since;
 
+pub use base::{Base, Posed};
 pub use channel_figures::ChannelFigures;
 pub use corrected::Corrected;
 pub use found::{Explained, Found};
@@ -35,6 +37,9 @@ pub struct Explanation {
     pub corrected_constants: Option<Corrected>,
     /// The effects added or changed, in order.
     pub steps: Vec<Step>,
+    /// Effects that reduce the error and are not named, because their probability is below one half; `error_after` is the error
+    /// with them.
+    pub doubtful: Vec<Step>,
     /// The remaining error.
     pub unexplained: Unexplained,
     /// Effects that are not detectable at their typical size, in ascending order of detectability; empty if an error

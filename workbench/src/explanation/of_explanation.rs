@@ -37,6 +37,7 @@ impl Explanation {
                 .as_ref()
                 .map(|constants| Corrected::new(constants, found.verdict, found.after.error())),
             steps: found.steps.iter().map(step).collect(),
+            doubtful: found.doubtful.iter().map(step).collect(),
             unexplained: Unexplained {
                 share: found.rest.share,
                 depends_on: found

@@ -34,6 +34,9 @@ impl fmt::Display for Explanation {
         if !self.steps.is_empty() {
             writeln!(f)?;
         }
+        for step in &self.doubtful {
+            writeln!(f, "{}\n", wrapped(&step.doubt()))?;
+        }
         writeln!(
             f,
             "{}",
@@ -273,6 +276,21 @@ impl Step {
 }
 
 /// A step without its number; lines after the first are indented.
+impl Step {
+    /// Why an effect that reduces the error is not named, as a sentence.
+    pub fn doubt(&self) -> String {
+        let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
+        format!(
+            "Not named: {}, {}{}. The error with it is {:.2} sigma, but its probability is {:.2}.",
+            self.name(),
+            self.change(),
+            values.join(", "),
+            self.error_after,
+            self.confidence
+        )
+    }
+}
+
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();

@@ -4,7 +4,6 @@ use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::baseline::Baseline;
-use hitch_identification::search::subset::{Accuracy, Options};
 use hitch_plant::Model;
 
 /// An adopted model with what it leaves on its baseline.
@@ -26,14 +25,10 @@ impl Since {
         }
     }
 
-    /// A new campaign less the baseline, and the options of a search for what has changed since.
+    /// A new campaign less the baseline: what remains has changed since.
     #[must_use]
-    pub fn posed<'a>(&self, new: &Campaign, options: Options<'a>) -> (Experiment, Options<'a>) {
+    pub fn subtracted_from(&self, new: &Campaign) -> Experiment {
         let experiment = Experiment::new(new, &self.model);
-        let options = Options {
-            constants: Accuracy::Adopted,
-            ..options
-        };
-        (self.baseline.subtracted_from(experiment), options)
+        self.baseline.subtracted_from(experiment)
     }
 }

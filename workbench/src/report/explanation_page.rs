@@ -74,6 +74,7 @@ fn verdict(shown: &Explanation) -> Markup {
             strong { (format!("{:.2}", head.error_before)) } " → " strong { (format!("{:.2}", head.error_after)) }
             " sigma; a perfect model has 1.00, the noise of the instruments."
         }
+        @for step in &shown.doubtful { p { (step.doubt()) } }
         @if !shown.unexplained.depends_on.is_empty() {
             p { (format!("{:.1} % of the squared error above the noise remains; it correlates with ", 100.0 * shown.unexplained.share))
                 (shown.unexplained.depends_on.join(", ")) "." }

@@ -3,6 +3,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use hitch_identification::data::limit::Limit;
 use serde_json::{Value, json};
 use tokio::sync::broadcast;
 
@@ -10,6 +11,7 @@ use super::routes::{Refusal, lock};
 use super::session::Job;
 use super::sessions::Shared;
 use super::tasks::{Outcome, Ready, Task};
+use crate::search_args::{BUDGET_S, limit};
 
 /// Panic payload that unwinds a cancelled computation.
 struct Cancelled;
@@ -17,6 +19,7 @@ struct Cancelled;
 /// Reports the progress of a computation to its tab.
 pub struct Reporter {
     cancelled: Arc<AtomicBool>,
+    keeps_best: bool,
     messages: broadcast::Sender<Value>,
 }
 
@@ -33,8 +36,13 @@ impl Reporter {
         self.tell(json!({ "kind": "candidate", "candidate": candidate, "fraction": fraction }));
     }
 
+    /// The limit of a search that keeps its best result: the usual time, and until it is cancelled.
+    pub fn limit(&self) -> Limit<'_> {
+        limit(BUDGET_S, Some(&*self.cancelled))
+    }
+
     fn tell(&self, message: Value) {
-        if self.cancelled.load(Ordering::Relaxed) {
+        if self.cancelled.load(Ordering::Relaxed) && !self.keeps_best {
             // Unwinds to the start of the computation without a panic message.
             resume_unwind(Box::new(Cancelled));
         }
@@ -56,11 +64,13 @@ pub fn start(session: &Shared, task: Task) -> Result<(), Refusal> {
     let ready = Ready::new(&open, task)?;
     let reporter = Reporter {
         cancelled: Arc::default(),
+        keeps_best: ready.keeps_best(),
         messages: open.messages.clone(),
     };
     open.job = Some(Job {
         title: ready.title(),
         cancelled: Arc::clone(&reporter.cancelled),
+        keeps_best: reporter.keeps_best,
     });
     drop(open);
     let session = Arc::clone(session);
@@ -71,10 +81,11 @@ pub fn start(session: &Shared, task: Task) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Stores the result unless the computation was cancelled, and reports its end.
+/// Stores the result unless the computation was given up, and reports its end.
 fn finish(session: &Shared, reporter: &Reporter, outcome: std::thread::Result<Outcome>) {
     let mut open = lock(session);
-    if reporter.cancelled.load(Ordering::Relaxed) {
+    let is_own = |job: &Job| Arc::ptr_eq(&job.cancelled, &reporter.cancelled);
+    if !open.job.as_ref().is_some_and(is_own) {
         return;
     }
     open.job = None;

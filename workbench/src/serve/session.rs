@@ -82,6 +82,8 @@ pub struct Job {
     pub title: String,
     /// Set to cancel it.
     pub cancelled: Arc<AtomicBool>,
+    /// Whether it then ends soon with its best result so far.
+    pub keeps_best: bool,
 }
 
 /// The steps of a tab; undone steps are kept until the next new step.
@@ -125,7 +127,7 @@ impl Session {
 
     /// Opens another campaign; the steps of the present one are lost.
     pub fn open(&mut self, subject: Arc<Subject>) {
-        self.cancel();
+        self.give_up();
         self.steps = vec![first(&subject)];
         self.at = 0;
         self.subject = subject;
@@ -186,8 +188,19 @@ impl Session {
         exists
     }
 
-    /// Cancels the running computation.
+    /// Cancels the running computation. A search ends soon, with its best result so far; cancelled once more, it is given up.
     pub fn cancel(&mut self) {
+        match &mut self.job {
+            Some(job) if job.keeps_best && !job.cancelled.load(Ordering::Relaxed) => {
+                job.cancelled.store(true, Ordering::Relaxed);
+                job.title = "Ending with the best explanation so far".to_owned();
+            }
+            _ => self.give_up(),
+        }
+    }
+
+    /// Gives up the running computation.
+    fn give_up(&mut self) {
         if let Some(job) = self.job.take() {
             job.cancelled.store(true, Ordering::Relaxed);
         }
@@ -206,7 +219,7 @@ fn first(subject: &Subject) -> Step {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        self.cancel();
+        self.give_up();
     }
 }
 

@@ -217,6 +217,11 @@ impl Ready {
         }
     }
 
+    /// Whether it ends with its best result so far when it is cancelled.
+    pub fn keeps_best(&self) -> bool {
+        matches!(self.what, What::Explain)
+    }
+
     /// Runs the task.
     pub fn run(&self, reporter: &Reporter) -> Outcome {
         let before = &self.present.evaluated.fit;
@@ -307,10 +312,13 @@ impl Ready {
         let estimate = &self.present.evaluated.fit.estimate;
         let model = estimate.applied_to(self.model());
         reporter.progress("fitting the clocks and loads", None, None);
-        let explained =
-            explanation::Explained::new(self.experiment(), &model, Options::default(), &|what| {
-                reporter.progress(&format!("trying {what}"), None, None);
-            });
+        let options = Options {
+            limit: reporter.limit(),
+            ..Options::default()
+        };
+        let explained = explanation::Explained::new(self.experiment(), &model, options, &|what| {
+            reporter.progress(&format!("trying {what}"), None, None);
+        });
         let explanation::Explained {
             explanation,
             suggestion,

@@ -239,7 +239,8 @@ impl Control {
             false => next,
         };
         if next.is_moving() && !self.phase.is_moving() {
-            self.motion.begin_move();
+            self.motion
+                .begin_move(self.calibration.hydraulics.compensator_lag);
             self.begin_move(next)?;
         }
         if self.phase.is_moving() && !next.is_moving() {

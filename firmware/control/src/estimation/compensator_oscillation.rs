@@ -23,6 +23,9 @@
 //! the peak velocity ratio ([`super::peak_velocity_ratio`]). An oscillation without a large lag is recognised by its
 //! overshoot. A move with an oscillation is not used to identify lags and offsets.
 //!
+//! A calibration may have the lag (`hydraulics.compensator_lag`); the oscillation is then confirmed from the first move
+//! on.
+//!
 //! ```text
 //! NotDetected --- large lag ---> Suspected --- next move ---> Detected
 //!    ^  ^  \__ large overshoot __> Confirmed                     |
@@ -34,7 +37,9 @@
 
 use hitch_quantities::units::{MicrometrePerSecond, Millisecond};
 
+use super::delayed_output::Pole;
 use super::spool_lag::MillisecondQ3;
+use crate::valve::phase::{Direction, Phase};
 
 /// State of the detection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,9 +69,11 @@ impl CompensatorOscillation {
         }
     }
 
-    /// A move begins.
-    pub fn begin_move(&mut self) {
-        if *self == Self::Suspected {
+    /// A move begins. `lag`: that of the compensator by the calibration. A known lag needs no evidence.
+    pub fn begin_move(&mut self, lag: Millisecond) {
+        if lag > Millisecond::ZERO {
+            *self = Self::Confirmed;
+        } else if *self == Self::Suspected {
             *self = Self::Detected;
         }
     }
@@ -132,6 +139,22 @@ impl CompensatorOscillation {
         !matches!(self, Self::NotDetected | Self::RuledOut)
     }
 
+    /// Poles of the observer behind a sensor with lag; those for an oscillation while such a load is lifted.
+    #[must_use]
+    pub fn pole(self, phase: Phase) -> Pole {
+        let lifts = matches!(
+            phase,
+            Phase::Moving {
+                direction: Direction::Lift,
+                ..
+            }
+        );
+        match lifts && self.is_detected() {
+            true => Pole::OSCILLATING,
+            false => Pole::USUAL,
+        }
+    }
+
     /// Time constant of the bias estimate while lifting at `speed`; `usual` without an oscillation.
     ///
     /// A bias estimate that is as fast as the oscillation amplifies it. The oscillation is slow behind an open valve
@@ -172,7 +195,7 @@ mod tests {
             !oscillation.evaluate_move(LIMIT, MillisecondQ3(LIMIT.0 / 3), LIMIT),
             "swung"
         );
-        oscillation.begin_move();
+        oscillation.begin_move(Millisecond::ZERO);
         oscillation.suspect(MillisecondQ3(0), LIMIT);
         assert_eq!(oscillation, CompensatorOscillation::Detected);
         assert!(oscillation.evaluate_move(LIMIT, LIMIT, LIMIT), "was gentle");
@@ -227,7 +250,7 @@ mod tests {
         }
         for extreme in [i32::MIN, i32::MAX].map(MillisecondQ3) {
             let mut known = suspected();
-            known.begin_move();
+            known.begin_move(Millisecond::ZERO);
             assert!(known.evaluate_move(extreme, extreme, extreme));
             assert_eq!(
                 known,
@@ -252,7 +275,7 @@ mod tests {
             oscillation.evaluate_move(LIMIT, LIMIT, LIMIT),
             "tells of its spool"
         );
-        oscillation.begin_move();
+        oscillation.begin_move(Millisecond::ZERO);
         oscillation.suspect(MillisecondQ3(i32::MAX), LIMIT);
         assert!(!oscillation.is_detected());
         oscillation.confirm();
@@ -263,9 +286,27 @@ mod tests {
             "overshot all the same"
         );
         let mut known = noticed();
-        known.begin_move();
+        known.begin_move(Millisecond::ZERO);
         known.rule_out(false);
         assert_eq!(known, CompensatorOscillation::Detected, "was gentle");
+    }
+
+    #[test]
+    fn a_lag_that_the_calibration_has_needs_no_evidence() {
+        let mut known = CompensatorOscillation::default();
+        known.begin_move(Millisecond(1));
+        assert!(known.is_detected(), "in the first lift");
+        let moving = |direction| Phase::Moving {
+            direction,
+            speed: MicrometrePerSecond::ZERO,
+        };
+        assert_eq!(known.pole(moving(Direction::Lift)), Pole::OSCILLATING);
+        assert_eq!(known.pole(moving(Direction::Lower)), Pole::USUAL);
+        assert_eq!(known.pole(Phase::Holding), Pole::USUAL);
+        known.revoke(MillisecondQ3(0));
+        known.rule_out(false);
+        known.discard_move();
+        assert!(known.is_detected());
     }
 
     #[test]

@@ -9,7 +9,8 @@
 //! b' = p^3 d                     y' = (x - y) / T + (3 p - 1 / T) (z - y)
 //! ```
 //!
-//! All three poles are at `p`, for any lag: 16 /s, as without a lag. The stored state is `d` instead of `y`, since no
+//! All three poles are at `p`, for any lag: 16 /s, as without a lag, and 8 /s for a load that is lifted and oscillates on its compensator
+//! ([`Pole`]). The stored state is `d` instead of `y`, since no
 //! quotient by a short lag appears in its equation:
 //!
 //! ```text
@@ -31,12 +32,27 @@ use hitch_quantities::units::{
     Micrometre, MicrometrePerSecond, MilliDegree, MilliDegreePerSecond, Millisecond,
 };
 
-/// Poles of the observer, 1/s.
-const POLE: i32 = 16;
 /// Steps in a second.
 const RATE: i32 = 1_000;
-/// `p^3` times the square of a step, inverted: a sum of `d` in um ms over this is the bias in um/s.
-pub const BIAS_SUM: i32 = RATE * RATE / (POLE * POLE * POLE);
+
+/// Poles of the observer, 1/s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pole(i32);
+
+impl Pole {
+    /// Of a load that follows its valve.
+    pub const USUAL: Self = Self(16);
+    /// Of a load that oscillates on its compensator, at 2 to 4 Hz behind the open valve: a bias that is as fast as the
+    /// oscillation amplifies it.
+    pub const OSCILLATING: Self = Self(8);
+
+    /// `p^3` times the square of a step, inverted: a sum of `d` in um ms over this is the bias in um/s.
+    #[must_use]
+    pub const fn bias_sum(self) -> i32 {
+        let Self(pole) = self;
+        RATE * RATE / (pole * pole * pole)
+    }
+}
 
 /// What an angle sensor with lag shows.
 #[derive(Clone, Copy, Debug)]
@@ -64,12 +80,17 @@ pub struct DelayedOutput {
 
 impl DelayedOutput {
     /// Takes in a measurement; `position`: that of the last step. The error `d` as piston travel, um ms.
-    pub fn compare(&mut self, shown: &LaggingAngle<'_>, position: Micrometre) -> i32 {
+    pub fn compare(
+        &mut self,
+        shown: &LaggingAngle<'_>,
+        position: Micrometre,
+        Pole(pole): Pole,
+    ) -> i32 {
         let last = self.measured.unwrap_or(shown.angle);
         let turned = shown.angle - last;
         let place = shown.linkage.angle(position);
         let ahead = place - last;
-        let decay = mul_div(self.error_mdeg_ms, 3 * POLE, Divisor::at_least_one(RATE));
+        let decay = mul_div(self.error_mdeg_ms, 3 * pole, Divisor::at_least_one(RATE));
         self.measured = Some(shown.angle);
         self.error_mdeg_ms = self
             .error_mdeg_ms
@@ -118,8 +139,8 @@ impl DelayedOutput {
 
 /// Correction of the position for an error `d`: `3 p^2` times the step.
 #[must_use]
-pub fn position_correction_nm(error_um_ms: i32) -> i32 {
-    mul_div(error_um_ms, 3 * POLE * POLE, Divisor::at_least_one(RATE))
+pub fn position_correction_nm(error_um_ms: i32, Pole(pole): Pole) -> i32 {
+    mul_div(error_um_ms, 3 * pole * pole, Divisor::at_least_one(RATE))
 }
 
 /// Distance between a place and what the sensor shows of it, `T` times the shown speed.

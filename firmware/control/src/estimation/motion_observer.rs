@@ -23,7 +23,7 @@ use hitch_quantities::{Calibration, CoilCurrents};
 
 use super::compensator_oscillation::CompensatorOscillation;
 use super::damping::Damping;
-use super::delayed_output::{self, DelayedOutput, LaggingAngle};
+use super::delayed_output::{self, DelayedOutput, LaggingAngle, Pole};
 use super::free_fall::{free_fall_stopping_distance, next_speed};
 use super::move_record::MoveRecord;
 use super::peak_velocity_ratio::PeakVelocityRatio;
@@ -92,7 +92,7 @@ impl MotionObserver {
         }
         self.damping.step(measured_nm);
         let correction = match lagging {
-            Some(shown) => self.delayed_correction(shown, parameters),
+            Some(shown) => self.delayed_correction(shown, self.oscillation.pole(phase), parameters),
             None => self.direct_correction(measured_nm, parameters),
         };
         self.position_nm = self.position_nm.saturating_add(correction.position_nm);
@@ -128,14 +128,15 @@ impl MotionObserver {
     fn delayed_correction(
         &mut self,
         shown: &LaggingAngle<'_>,
+        pole: Pole,
         parameters: &MotionParameters,
     ) -> Correction {
-        let error = self.output.compare(shown, self.position);
+        let error = self.output.compare(shown, self.position, pole);
         self.position_nm = self.position_nm.saturating_add(self.speed().0);
         Correction {
             error,
-            position_nm: delayed_output::position_correction_nm(error),
-            bias_sum: delayed_output::BIAS_SUM,
+            position_nm: delayed_output::position_correction_nm(error, pole),
+            bias_sum: pole.bias_sum(),
             decay: parameters.position_time.divisor(),
         }
     }
@@ -273,7 +274,7 @@ impl MotionObserver {
         self.oscillation.confirm();
     }
 
-    /// The present move is obstructed or cancelled: it is no evidence of an oscillation.
+    /// The present move is obstructed or cancelled, no evidence of an oscillation.
     pub fn discard_move(&mut self) {
         self.oscillation.discard_move();
     }
@@ -347,12 +348,12 @@ impl MotionObserver {
         }
     }
 
-    /// A move begins: resets the bias, because the direction may change, and starts the identification.
-    pub fn begin_move(&mut self) {
+    /// A move begins: resets bias and identification. `compensator_lag`: that of the calibration.
+    pub fn begin_move(&mut self, compensator_lag: Millisecond) {
         self.lag_regression = LagRegression::from(self.position_nm);
         self.velocity_ratio = PeakVelocityRatio::from(self.position_nm);
         self.uses_closing_delay = false;
-        self.oscillation.begin_move();
+        self.oscillation.begin_move(compensator_lag);
         self.lag_correction = MillisecondQ3::default();
         self.bias_sum = 0;
         self.bias = MicrometrePerSecond::ZERO;

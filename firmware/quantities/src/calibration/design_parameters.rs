@@ -20,6 +20,8 @@ parameter_group! {
         spool_lag: Millisecond = 40, 0..=500;
         /// The same of the lowering valve: of one kind, but by 10 ms and more another unit.
         lower_spool_lag: Millisecond = 40, 0..=500;
+        /// Lag of the pressure compensator. A lifted load swings on a compensator that lags: with a value above zero it is lifted with the gentle ramps from the first move on, otherwise once its motion shows the lag, which it cannot behind a slow angle sensor.
+        compensator_lag: Millisecond = 0, 0..=200;
         /// Hysteresis of coil and spool: how much further the current has to fall than it rose for the same flow. 2 % of the range, half of what valves have with dither, for a machine that hasn't been taught: teaching finds more, and believes it.
         hysteresis: MilliAmp = 80, 0..=1_000;
         /// Pressure drop at which the lowering table was measured.

@@ -24,7 +24,7 @@ const TOLERATED_RINGING: f64 = 4.0;
 
 /// The same for the discrepancy of an adopted model beside a baseline: it is one error over a whole cell, and the largest
 /// of some dozen may have three times its size.
-const TOLERATED_DISCREPANCY: f64 = 9.0;
+pub(crate) const TOLERATED_DISCREPANCY: f64 = 9.0;
 
 /// Relative accuracy with which an effect of the right form reproduces a change of the channels: tables, areas and
 /// loads are accurate to half a percent, and the instant of ground contact to one sample.
@@ -112,7 +112,8 @@ fn limit(samples: usize, tolerated: f64) -> f64 {
 }
 
 /// The cells of a fit after effects were added. Where the fit without them had larger residuals (`before`), the
-/// tolerance grows accordingly, as an effect explains a change only to a relative accuracy.
+/// tolerance grows accordingly, as an effect explains a change only to a relative accuracy. The error of the effect is
+/// independent of the others that are tolerated, so their squares add.
 #[must_use]
 pub fn cells_since(before: &[Cell], experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
     let mut cells = cells(experiment, fit);
@@ -124,7 +125,7 @@ pub fn cells_since(before: &[Cell], experiment: &Experiment, fit: &Fit) -> Vec<C
             .iter()
             .find(same)
             .map_or(1.0, |other| other.mean_square);
-        cell.tolerated = cell.tolerated.max(1.0 + EXACT * EXACT * (had - 1.0));
+        cell.tolerated += EXACT * EXACT * (had - 1.0).max(0.0);
     }
     sort(&mut cells);
     cells

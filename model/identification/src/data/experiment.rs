@@ -6,7 +6,7 @@ use hitch_campaign::{Bench, Campaign, Run};
 use hitch_plant::simulation::{Trace, simulate_in};
 use hitch_plant::solver::dynamic::Steps;
 use hitch_plant::{
-    AddedEffect, Channel, Currents, Dynamics, HitchRig, Model, Rig, SizeResponse, units,
+    AddedEffect, Channel, Currents, Dynamics, HitchRig, Model, Plant, Rig, SizeResponse, units,
 };
 use rayon::prelude::*;
 
@@ -95,6 +95,13 @@ pub struct Experiment {
 }
 
 impl Experiment {
+    /// Whether what the model leaves on a baseline has been subtracted. Its constants are then as they were on the baseline.
+    #[must_use]
+    pub fn is_beside_baseline(&self) -> bool {
+        let mut widened = self.runs.iter().flat_map(|run| &run.widened);
+        widened.any(|samples| !samples.is_empty())
+    }
+
     /// Prepares a campaign; `model` defines the valves' thresholds and the ends of the stroke.
     #[must_use]
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
@@ -320,6 +327,14 @@ impl ReadyRun {
         channels.all(|values| values[one].is_finite() == values[other].is_finite())
     }
 
+    /// Share of the variance of a residual, by its index, that is a discrepancy of the model known from a baseline: all of it
+    /// in a state that the baseline does not show.
+    #[must_use]
+    pub(crate) fn discrepancy(&self, at: usize) -> f64 {
+        let widened = self.widened[at / self.len()].get(at % self.len());
+        widened.map_or(0.0, |widened| widened.discrepancy.unwrap_or(1.0))
+    }
+
     /// Number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -350,6 +365,15 @@ impl ReadyRun {
                 port_pressure_pa: units::pa_from_bar(port_pressure_bar),
             },
         }
+    }
+
+    /// One sigma of the cylinder pressure of a piston that dry friction holds, bar: the force that it carries is anywhere
+    /// between both directions.
+    #[must_use]
+    pub fn stuck_bar(&self, model: &Model, nuisance: Nuisance) -> f64 {
+        let at_rest = Currents::default();
+        let plant = Plant::new(model, self.rig(nuisance), self.oil_temperature_c, at_rest);
+        units::bar_from_pa(plant.dry_friction_pa()) / 3f64.sqrt()
     }
 
     /// Simulated trace without clock offsets, driven by the conditioned currents shifted by `shift`.

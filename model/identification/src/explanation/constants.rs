@@ -114,7 +114,7 @@ pub(crate) fn search_with_constants(
     }
     let suspected = |search: &Search| {
         let fewer = search.slightly_worse_with_fewer();
-        match options.constants == Accuracy::Adopted || options.is_over() {
+        match problem.experiment.is_beside_baseline() || options.is_over() {
             true => None,
             false => suspected(problem, search.present(), &fewer),
         }

@@ -55,7 +55,7 @@ pub fn diagnose_each(
 
 /// Probability that the declared constants are off, given the best fit with them and that without further effects.
 fn constants_off(problem: Problem<'_>, declared: &Fit, base: &Fit) -> f64 {
-    if declared.estimate.constants.is_some() {
+    if declared.estimate.constants.is_some() || problem.experiment.is_beside_baseline() {
         return 0.0;
     }
     let is_faint = || base.cost < FAINT * declared.cost;

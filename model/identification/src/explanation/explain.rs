@@ -110,6 +110,9 @@ pub struct Explanation {
     pub after: Fit,
     /// The steps in order.
     pub steps: Vec<ExplanationStep>,
+    /// Effects that reduce the error and are rather absent than present, in the order of their removal, each with the model that
+    /// had it.
+    pub doubtful: Vec<ExplanationStep>,
     /// The conclusion.
     pub verdict: Verdict,
     /// Cells of the residuals after the last step, by decreasing excess.
@@ -123,6 +126,12 @@ pub struct Explanation {
     pub undetected: Vec<Undetected>,
     /// Whether the deadline passed before the search ended.
     pub unfinished: bool,
+}
+
+/// The effects that a search found.
+struct Members {
+    steps: Vec<ExplanationStep>,
+    doubtful: Vec<ExplanationStep>,
 }
 
 /// Fits loads and clocks of a model; its effects stay unchanged.
@@ -169,17 +178,25 @@ pub fn explain_with(problem: Problem<'_>, options: Options<'_>, progress: Progre
     };
     progress("how sure that is");
     let mut steps = steps(problem, &before, &searched);
+    let mut doubtful = Vec::new();
     loop {
         let fewer = steps.iter().rev().skip(1).map(|step| step.fit.clone());
-        let improbable = improbable(&steps);
-        if let Some(step) = steps.iter().position(may_be_absent).or(improbable) {
+        if let Some(step) = steps.iter().position(may_be_absent) {
+            searched.found.remove(problem, step);
+        } else if let Some(step) = improbable(&steps) {
+            doubtful.push(ExplanationStep {
+                fit: searched.found.fit.clone(),
+                error_after: searched.found.fit.error(),
+                ..steps.remove(step)
+            });
             searched.found.remove(problem, step);
         } else if !searched.found.moves_to_fewer(problem, fewer.collect()) {
             break;
         }
         steps = self::steps(problem, &before, &searched);
     }
-    concluded(problem, before, refitted, searched, steps)
+    let members = Members { steps, doubtful };
+    concluded(problem, before, refitted, searched, members)
 }
 
 /// Whether the interval of a step's size contains its absent value. A single jump that the noise of a current decides
@@ -332,9 +349,10 @@ fn concluded(
     before: Fit,
     refitted: Option<Fit>,
     searched: Searched,
-    steps: Vec<ExplanationStep>,
+    members: Members,
 ) -> Explanation {
     let Problem { experiment, .. } = problem;
+    let Members { steps, doubtful } = members;
     let Searched {
         found, corrected, ..
     } = searched;
@@ -368,6 +386,7 @@ fn concluded(
         corrected,
         after,
         steps,
+        doubtful,
         verdict,
         cells,
         rest,

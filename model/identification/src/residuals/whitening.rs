@@ -3,6 +3,8 @@
 //! * Pressures and flow: the standard deviation of a sample combines, in quadrature, the instrument's noise and the
 //!   effect of the uncertainty of the logged current and of the sampling time on the simulated value. Samples that a
 //!   log cannot resolve (a pressure edge that may lie on either side of the sample) are left out.
+//! * Cylinder pressure at rest in a dynamic model: dry friction holds the piston anywhere in its band, depending on the phase
+//!   at which the ringing ended. The standard deviation of a uniform distribution over the band is added.
 //! * Angle: it integrates the flow, so errors of the logged current accumulate as a random walk with known step
 //!   variance. A scalar Kalman filter removes the walk: each sample is compared with its prediction from the model and
 //!   the previous samples (Kristensen, Madsen & Jorgensen 2004, with known instead of fitted diffusion). Drift without
@@ -18,6 +20,7 @@ use rayon::prelude::*;
 
 use crate::data::experiment::{Experiment, ReadyRun, Widening};
 use crate::data::problem::Problem;
+use crate::data::regime::Regime;
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
 use crate::residuals::contact_mask::contact_mask;
@@ -182,12 +185,21 @@ impl RunWeights {
             } else {
                 vec![0.0; run.len()]
             };
+            let stuck = match channel {
+                Channel::CylinderPressure if ringing => run.stuck_bar(model, nuisance),
+                _ => 0.0,
+            };
             for (sample, value) in measured.iter().enumerate() {
                 let spread =
                     0.5 * (above.channel(channel)[sample] - below.channel(channel)[sample]);
                 let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
                 let noise = sigma / run.averaged[sample].sqrt();
-                let deviation = noise.hypot(spread).hypot(shift).hypot(tolerance[sample]);
+                let at_rest = match run.regimes[sample] {
+                    Regime::Holding => stuck,
+                    _ => 0.0,
+                };
+                let deviation = noise.hypot(spread).hypot(shift);
+                let deviation = deviation.hypot(tolerance[sample]).hypot(at_rest);
                 let known = deviation <= LARGEST_DEVIATION * sigma
                     && !is_discontinuous(sample)
                     && !(channel == Channel::PumpPressure && at_an_edge(sample));

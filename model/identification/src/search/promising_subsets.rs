@@ -1,6 +1,6 @@
 //! Selection of the subsets that are fitted with the full model.
 
-use hitch_plant::Model;
+use hitch_plant::{Effect, Model};
 
 use crate::estimate::Estimate;
 use crate::estimation::fit::Fit;
@@ -17,6 +17,14 @@ const FITTED: usize = 12;
 
 /// Starts of one set of effects whose cost has many local minima.
 pub(crate) const LOCAL_MINIMA: usize = 2;
+
+/// Most starts of a set with an effect.
+pub(crate) fn most_starts(effect: &dyn Effect) -> usize {
+    match effect.size_response().is_rough() {
+        true => LOCAL_MINIMA,
+        false => 1,
+    }
+}
 
 /// Relative error of a secant's prediction, as a share of the predicted cost reduction or of that of a replaced effect.
 /// A further effect that predicts less is left to the next dictionary.
@@ -87,18 +95,9 @@ pub(crate) fn starts(
         let near = best + (NEAR * apart(dictionary, subset, leader)).max(close);
         let key = key_of(dictionary, subset);
         let known = taken.iter().filter(|taken| **taken == key).count();
-        let is_rough = |&column: &usize| {
-            dictionary.entries[column]
-                .added
-                .effect
-                .size_response()
-                .is_rough()
-        };
-        let most = if subset.columns.iter().any(is_rough) {
-            LOCAL_MINIMA
-        } else {
-            1
-        };
+        let members = subset.columns.iter();
+        let effects = members.map(|&column| dictionary.entries[column].added.effect);
+        let most = effects.map(most_starts).max().unwrap_or(1);
         if predicted_cost > near || is_more(subset, leader) || known >= most {
             continue;
         }

@@ -11,6 +11,7 @@ use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
 use crate::search::dictionary::DictionaryBuilder;
 use crate::search::dictionary_entry::Kind;
+use crate::search::promising_subsets::most_starts;
 use crate::search::refit::Refits;
 use crate::search::scan_cache::Scans;
 use crate::search::subset::Options;
@@ -38,6 +39,14 @@ pub fn try_effects(
     try_each(problem, base, effects, progress, &|_| {})
 }
 
+/// An effect with the starts of its fit.
+struct Tried {
+    effect: &'static dyn Effect,
+    /// Predicted cost of the first start.
+    cost: f64,
+    starts: Vec<Estimate>,
+}
+
 /// [`try_effects`] with a callback for each form once it is weighed, in any order.
 #[must_use]
 pub fn try_each(
@@ -61,54 +70,71 @@ pub fn try_each(
     };
     let dictionary = builder.thorough(builder.dictionary());
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
-    let start = |effect: &'static dyn Effect| -> Option<(f64, Estimate)> {
+    // The most promising first; as many as a search tries.
+    let starts = |effect: &'static dyn Effect| -> Vec<(f64, Estimate)> {
         let own = |&column: &usize| {
             let entry = &entries[column];
             entry.kind == Kind::New && is_same(entry.added.effect, effect)
         };
         let columns = (0..entries.len()).filter(own);
-        let subsets = columns.map(|column| fitted(gram, entries, vec![column]));
-        let best = subsets.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
-        let added = entries[best.columns[0]].at(best.shares[0]);
-        let mut estimate = base.estimate.clone();
-        estimate.effects.push(added.clone());
-        (!added.is_null()).then_some((best.cost, estimate))
+        let start = |column: usize| {
+            let subset = fitted(gram, entries, vec![column]);
+            let added = entries[column].at(subset.shares[0]);
+            let mut estimate = base.estimate.clone();
+            estimate.effects.push(added.clone());
+            (!added.is_null()).then_some((subset.cost, estimate))
+        };
+        let mut starts: Vec<(f64, Estimate)> = columns.filter_map(start).collect();
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.truncate(most_starts(effect));
+        starts
     };
-    let mut starts: Vec<(f64, &'static dyn Effect, Option<Estimate>)> = effects
+    let mut tried: Vec<Tried> = effects
         .iter()
-        .map(|&effect| match start(effect) {
-            Some((cost, estimate)) => (cost, effect, Some(estimate)),
-            None => (f64::INFINITY, effect, None),
+        .map(|&effect| {
+            let starts = starts(effect);
+            Tried {
+                effect,
+                cost: starts.first().map_or(f64::INFINITY, |start| start.0),
+                starts: starts.into_iter().map(|(_, start)| start).collect(),
+            }
         })
         .collect();
-    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    tried.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let refits = Refits {
         coarse: &coarse,
         best: coarse.seen.cost,
         penalty,
         options: Options::default(),
     };
-    let least = starts.first().map_or(coarse.seen.cost, |start| start.0);
+    let least = tried.first().map_or(coarse.seen.cost, |tried| tried.cost);
     let considerable = coarse.seen.cost - CONSIDERABLE * (coarse.seen.cost - least);
     let slow = slow_columns(problem, base);
     // Index of the added effect.
     let added = base.estimate.effects.len();
     let promising = |cost: f64| coarse.seen.cost - cost > builder.worthwhile || effects.len() == 1;
-    let tried = starts.into_par_iter().enumerate();
-    let tried = tried.map(|(rank, (cost, effect, estimate))| {
+    let tried = tried.into_par_iter().enumerate().map(|(rank, tried)| {
+        let Tried {
+            effect,
+            cost,
+            starts,
+        } = tried;
         progress(effect.id());
-        let candidate = match estimate {
-            Some(estimate) if promising(cost) && rank < FITTED && cost <= considerable => {
-                weigh(problem, base, refits.one(estimate), added)
+        let first = starts.first().cloned().filter(|_| promising(cost));
+        let candidate = match first {
+            Some(_) if rank < FITTED && cost <= considerable => {
+                let fits = starts.into_par_iter().map(|start| refits.one(start));
+                let best = fits.min_by(|a, b| a.cost.total_cmp(&b.cost));
+                weigh(problem, base, best.unwrap_or_else(|| base.clone()), added)
             }
-            Some(estimate) if promising(cost) && rank < FITTED => {
+            Some(estimate) if rank < FITTED => {
                 weigh_by(problem, base, refits.one_roughly(estimate), added, &slow)
             }
-            Some(estimate) if promising(cost) => {
+            Some(estimate) => {
                 let fit = evaluate_weighted(problem, estimate, base.weights.clone());
                 weigh_by(problem, base, fit, added, &slow)
             }
-            _ => {
+            None => {
                 let mut fit = base.clone();
                 fit.estimate.effects.push(AddedEffect::null(effect));
                 Candidate::absent(fit, added)

@@ -51,13 +51,12 @@ const TRIED: usize = 3;
 /// How accurate the constants of a model are.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Accuracy {
-    /// Unknown: as exact as those of any model, or off by a share of the tolerances of data sheets; the campaign decides.
+    /// Unknown: as exact as those of any model, or off by a share of the tolerances of data sheets; the campaign decides. Beside
+    /// a baseline they are as they were on it.
     #[default]
     Unknown,
     /// That of a data sheet: they are fitted together with the effects, but for those in [`Options::exact`].
     DataSheet,
-    /// As they were on a baseline, which is subtracted.
-    Adopted,
 }
 
 /// Options of a search.

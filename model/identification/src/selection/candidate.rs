@@ -1,9 +1,11 @@
 //! An effect fitted in addition to the free parameters of a model, and its evidence.
 
+use std::f64::consts::SQRT_2;
+
 use hitch_plant::{AddedEffect, Effect, ParameterKind};
 use rayon::prelude::*;
 
-use crate::adequacy::lack_of_fit::SLOW_NOISE;
+use crate::adequacy::lack_of_fit::{SLOW_NOISE, TOLERATED_DISCREPANCY};
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::estimate::Shared;
@@ -304,30 +306,45 @@ impl Evidence {
         Self {
             detectability: detectability(&left, penalty, fit.weights.count()),
             inflation: variance_inflation(problem.experiment, &fit.residuals, &left),
-            explained_share: explained_share(&left, &huber(fit.residuals.clone())),
+            explained_share: explained_share(
+                problem.experiment,
+                &left,
+                &huber(fit.residuals.clone()),
+            ),
         }
     }
 }
 
 /// Share of the mean square beyond noise that an effect explains, both weighted by its squared change of the residuals.
 /// Residuals elsewhere do not count, as they say nothing about this effect. A wrong effect in place of the true one
-/// leaves residuals where it acts.
-pub(crate) fn explained_share(changes: &[Vec<f64>], residuals: &[Vec<f64>]) -> f64 {
+/// leaves residuals where it acts. What the model leaves on a baseline as well is noise: its error is one and the same over
+/// many samples, so that their mean square scatters as the square of a single number. The effect in turn has to explain more than
+/// such an error: at the largest tolerated one its plausibility is even.
+pub(crate) fn explained_share(
+    experiment: &Experiment,
+    changes: &[Vec<f64>],
+    residuals: &[Vec<f64>],
+) -> f64 {
     let (mut weight, mut weight_square, mut explained, mut left) = (0.0, 0.0, 0.0, 0.0);
-    let pairs = changes.iter().flatten().zip(residuals.iter().flatten());
-    for (change, residual) in pairs {
-        let square = change * change;
-        weight += square;
-        weight_square += square * square;
-        explained += square * square;
-        left += square * (residual * residual - 1.0);
+    let mut discrepancy = 0.0;
+    for (run, (changes, residuals)) in experiment.runs.iter().zip(changes.iter().zip(residuals)) {
+        for (at, (change, residual)) in changes.iter().zip(residuals).enumerate() {
+            let square = change * change;
+            weight += square;
+            weight_square += square * square;
+            explained += square * square;
+            left += square * (residual * residual - 1.0);
+            discrepancy += square * run.discrepancy(at);
+        }
     }
     if weight == 0.0 {
         return 0.0;
     }
-    // Standard error of the weighted mean square of partly slow noise.
+    // Standard error of the weighted mean square of partly slow noise, and of a square of one number.
     let scatter = (2.0 * SLOW_NOISE * weight_square).sqrt() / weight;
+    let scatter = scatter.hypot(SQRT_2 * discrepancy / weight);
     let left = (left / weight - SCATTERS * scatter).max(0.0);
+    let imitated = TOLERATED_DISCREPANCY / EVEN_RATIO * discrepancy / weight;
     let explained = explained / weight;
-    explained / (explained + left)
+    explained / (explained + left + imitated)
 }

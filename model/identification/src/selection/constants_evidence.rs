@@ -63,7 +63,7 @@ impl FreedConstants {
         Self {
             share,
             cost: ConstantsCost::of(&sensitivities),
-            explained_share: explained_share(&changes, residuals),
+            explained_share: explained_share(problem.experiment, &changes, residuals),
         }
     }
 

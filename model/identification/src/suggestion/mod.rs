@@ -21,6 +21,7 @@ use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate, refine};
 use crate::explanation::explain::{Explanation, Verdict};
 use crate::search::candidates::Progress;
+use crate::search::screening::EXPLAINED;
 use crate::search::single_effects::try_effects;
 use crate::selection::candidate::{Candidate, weigh};
 use crate::selection::evidence::SIGNIFICANT;
@@ -66,14 +67,15 @@ pub struct Suggestion {
     pub unneeded: Vec<&'static dyn Effect>,
 }
 
-/// Searches for a term if the verdict of an explanation is [`Verdict::Unexplained`].
+/// Searches for a term if the verdict of an explanation is [`Verdict::Unexplained`], unless the error that it leaves is in single
+/// cells only: a term is judged by the error of whole runs.
 #[must_use]
 pub fn suggest(
     problem: Problem<'_>,
     found: &Explanation,
     progress: Progress,
 ) -> Option<Suggestion> {
-    if found.verdict != Verdict::Unexplained {
+    if found.verdict != Verdict::Unexplained || found.after.error() <= EXPLAINED {
         return None;
     }
     let last = found.steps.last().map(|step| step.held_out_after);

@@ -184,6 +184,18 @@ impl<'m> Plant<'m> {
         }
     }
 
+    /// Angular frequency of the load on its oil with shut valves, at the present travel and pressure, rad/s; NaN on a
+    /// flow bench.
+    #[must_use]
+    pub fn load_frequency_rad_s(&self) -> f64 {
+        match self.rig {
+            Rig::Hitch(rig) => {
+                dynamic::load_frequency_rad_s(&self.forces(&rig), &self.circuit(), &self.state)
+            }
+            Rig::Flow { .. } => f64::NAN,
+        }
+    }
+
     /// Pump pressure with the lift valve closed, Pa.
     #[must_use]
     pub fn idle_pressure_pa(&self) -> f64 {

@@ -27,6 +27,22 @@ impl Plant<'_> {
         }
     }
 
+    /// Pressure, Pa, by which the cylinder at the present travel may be above or below that of the weight, while dry
+    /// friction holds the piston; zero on a flow bench.
+    #[must_use]
+    pub fn dry_friction_pa(&self) -> f64 {
+        let Rig::Hitch(rig) = self.rig else {
+            return 0.0;
+        };
+        let forces = self.forces(&rig);
+        let weight_n = forces.weight_n(self.state.piston_m);
+        let at_rest = MechanicalState {
+            speed_m_s: 0.0,
+            ..self.state
+        };
+        forces.dry_friction_n(&at_rest, weight_n) / self.model.constants().cylinder.area_m2()
+    }
+
     /// Places a hitch at rest on the ground if its sensor shows it below or slightly above. In the quasi-static plant
     /// it stays at the shown position: below the ground it stands in a hollow, and slightly above the ground carries it
     /// as well.

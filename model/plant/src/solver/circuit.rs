@@ -4,7 +4,7 @@ use crate::components::orifice_valve::OrificeValve;
 use crate::components::pump::PumpKind;
 use crate::components::valve_curve::ValveCurve;
 use crate::constants::Constants;
-use crate::hooks::effect_hooks::{EffectHooks, FlowFactor};
+use crate::hooks::effect_hooks::{EffectHooks, FlowFactor, Line};
 use crate::hooks::place::Place;
 use crate::solver::moment::Moment;
 use crate::state::MechanicalState;
@@ -297,7 +297,8 @@ impl Circuit<'_> {
         }
         let flow_at = self.lift_flow_at(opening, state);
         let without_flow_pa = self.lifting_pressure_pa(state);
-        self.relieved_pa(self.drooped_pa(without_flow_pa, &flow_at), &flow_at)
+        let drooped_pa = self.drooped_pa(without_flow_pa, state.pressure_pa, &flow_at);
+        self.relieved_pa(drooped_pa, &flow_at)
     }
 
     /// Whether the compensator is at its idle pressure, as it always is without a lag.
@@ -360,16 +361,35 @@ impl Circuit<'_> {
         state.compensator_pa + state.catching_up * lacking_pa
     }
 
-    /// The pump pressure, Pa, that the compensator sets with the lift flow `flow_at` that pressure; without flow it
-    /// would set `wanted_pa`.
-    fn drooped_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
+    /// The pump pressure, Pa, that the compensator sets with the lift flow `flow_at` that pressure at a cylinder pressure;
+    /// without flow it would set `wanted_pa`.
+    ///
+    /// The margin that it loses per flow acts as a laminar resistance in series with the orifice, which gives the pressure in
+    /// closed form for the square-root law, and a good guess for any other.
+    fn drooped_pa(
+        &self,
+        wanted_pa: f64,
+        cylinder_pressure_pa: f64,
+        flow_at: &impl Fn(f64) -> f64,
+    ) -> f64 {
         let lost_pa_s_m3 = self.hooks.margin_lost_to_flow_pa_s_m3;
-        if lost_pa_s_m3 == 0.0 {
+        let free_m3_s = flow_at(wanted_pa);
+        if lost_pa_s_m3 == 0.0 || free_m3_s <= 0.0 {
             return wanted_pa;
         }
-        let lost_pa = |pressure_pa: f64| lost_pa_s_m3 * flow_at(pressure_pa);
-        let excess = |pressure_pa: f64| pressure_pa + lost_pa(pressure_pa) - wanted_pa;
-        crate::solver::root::rising(excess, wanted_pa - lost_pa(wanted_pa), wanted_pa, 10.0)
+        let resistance = Line {
+            laminar_pa_s_m3: lost_pa_s_m3,
+            ..Line::default()
+        };
+        let drop_pa = self.lift_drop_pa(wanted_pa, cylinder_pressure_pa);
+        let guess_m3_s = resistance.behind_orifice_m3_s(free_m3_s, drop_pa);
+        let excess = |pressure_pa: f64| {
+            let lost_pa = lost_pa_s_m3 * flow_at(pressure_pa);
+            (pressure_pa + lost_pa - wanted_pa, pressure_pa)
+        };
+        let range_pa = (wanted_pa - lost_pa_s_m3 * free_m3_s, wanted_pa);
+        let guess_pa = wanted_pa - lost_pa_s_m3 * guess_m3_s;
+        crate::solver::root::steep(excess, guess_pa, range_pa, 10.0)
     }
 
     /// The pump pressure, Pa, limited by the relief valve, where the compensator would set `wanted_pa`; `flow_at` is

@@ -282,6 +282,19 @@ pub fn longest_step_s(
     (steps.longest_rad / ringing_rad_s).min(steps.longest_s)
 }
 
+/// Angular frequency of the load on its oil with shut valves, rad/s: `A sqrt(K / M)` with the stiffness `K` of oil, air and
+/// hoses at the present pressure.
+#[must_use]
+pub fn load_frequency_rad_s(forces: &Forces, circuit: &Circuit, state: &MechanicalState) -> f64 {
+    let dh_dx = forces.model.linkage().dh_dx(state.piston_m);
+    let constants = circuit.constants;
+    let of_load_kg = constants.masses.inertia_kg(forces.rig.load_kg, dh_dx);
+    let (shaft_kg, _) = forces.shaft_inertia_kg(state.piston_m);
+    let inertia_kg = of_load_kg * (1.0 + circuit.hooks.inertia_share) + shaft_kg;
+    let stiffness_pa_m3 = stiffness_pa_m3(circuit, state.piston_m, state.pressure_pa);
+    constants.cylinder.area_m2() * (stiffness_pa_m3 / inertia_kg).sqrt()
+}
+
 /// Whether the hitch stays at rest in a step with these openings.
 #[must_use]
 pub fn rests(

@@ -6,6 +6,9 @@ use crate::model::Model;
 use crate::solver::moment::Moment;
 use crate::state::{HitchRig, MechanicalState};
 
+/// Speed, m/s, at which a seal slides: the friction of the effects has passed its transition from rest.
+const SLIDING_M_S: f64 = 0.012;
+
 /// Forces on the piston of one hitch.
 #[derive(Clone, Copy)]
 pub struct Forces<'a> {
@@ -80,6 +83,22 @@ impl Forces<'_> {
         self.hooks.friction_n(state, weight_n)
             + self.hooks.bristles_n(state.bristles_m)
             + self.moment.term(Place::Friction, state, |_| ())
+    }
+
+    /// Dry friction, N, in a state at rest: the largest force that a stuck piston carries in either direction. It is the
+    /// friction above the transition from rest, extrapolated to no speed, so that a viscous part does not count.
+    #[must_use]
+    pub fn dry_friction_n(&self, at_rest: &MechanicalState, weight_n: f64) -> f64 {
+        let at = |speed_m_s: f64| {
+            let state = MechanicalState {
+                speed_m_s,
+                ..*at_rest
+            };
+            self.friction_n(&state, weight_n) - self.friction_n(at_rest, weight_n)
+        };
+        let smooth_n = 2.0 * at(SLIDING_M_S) - at(2.0 * SLIDING_M_S);
+        let bristles_n = self.hooks.bristles.map_or(0.0, |bristles| bristles.force_n);
+        (smooth_n + bristles_n).max(0.0)
     }
 
     /// Lowest travel of the piston, m: the end of the stroke, or where the ground carries the weight.

@@ -110,6 +110,7 @@ function explanation(found, keeps, run) {
       "Effects of the model are kept; only their sizes may change. Remove an effect to have it re-examined.")] : []),
     ...(found.constants ? [constants(found.constants)] : []),
     ...parts,
+    ...found.doubtful.map((sentence) => element("p", {}, sentence)),
     ...(found.steps.length || found.constants ? [take] : []),
     ...(found.suggested ? [suggested(found.suggested, run)] : []),
     ...(found.next_experiment ? [element("p", {}, `Next experiment: ${found.next_experiment}.`)] : []),

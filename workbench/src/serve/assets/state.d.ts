@@ -127,6 +127,8 @@ interface Explained {
   meaning: string;
   constants: Constants | null;
   steps: ExplainedStep[];
+  /** Why effects that reduce the error are not named, a sentence each. */
+  doubtful: string[];
   suggested: Suggested | null;
   not_visible: string[];
   next_experiment: string | null;

@@ -8,7 +8,9 @@ use hitch_identification::selection::candidate;
 use hitch_plant::{Effect, full_name};
 use serde_json::{Value, json};
 
-use crate::explanation::{self, Candidate, Corrected, explained as share_explained, parameters};
+use crate::explanation::{
+    self, Candidate, Corrected, Step, explained as share_explained, parameters,
+};
 use crate::serve::session::{Explained, Ranking, Session};
 
 /// Texts of an effect.
@@ -77,7 +79,7 @@ pub fn explained(session: &Session) -> Value {
 fn found(explained: &Explained) -> Value {
     let shown = &explained.shown;
     let steps = explained.explanation.steps.iter().zip(&shown.steps);
-    let step = |(found, shown): (&explain::ExplanationStep, &explanation::Step)| {
+    let step = |(found, shown): (&explain::ExplanationStep, &Step)| {
         json!({
             "effect": described(found.effect),
             "changed_from": shown.changed_from,
@@ -97,6 +99,7 @@ fn found(explained: &Explained) -> Value {
         "meaning": shown.meaning(),
         "constants": shown.corrected_constants.as_ref().map(|corrected| constants(corrected, shown.head.error_before)),
         "steps": steps.map(step).collect::<Vec<_>>(),
+        "doubtful": shown.doubtful.iter().map(Step::doubt).collect::<Vec<_>>(),
         "suggested": shown.unexplained.suggested,
         "not_visible": shown.not_visible.iter().map(|effect| effect.effect).collect::<Vec<_>>(),
         "next_experiment": shown.next.next_experiment,
