@@ -83,6 +83,33 @@ fn a_data_sheet_becomes_a_machine_and_a_baseline_shows_what_has_changed() {
     let steps = found["steps"].as_array().unwrap();
     let named: Vec<&Value> = steps.iter().map(|step| &step["effect"]).collect();
     assert_eq!(named, ["lower-threshold-shift"]);
+
+    // The same question in two other ways has the same answer.
+    let of = |parameters: &Value, what: &str| parameters[0][what].as_f64().unwrap();
+    let explained = &steps[0]["parameters"];
+    let same = |value: f64, how: &str| {
+        let width = of(explained, "high") - of(explained, "low");
+        let off = (value - of(explained, "value")) / width;
+        println!("{how}: {value} A, {off:.3} of the interval's width off");
+        assert!(off.abs() < 0.02, "{how}");
+    };
+    let beside = ["--model", "machine.toml", "--baseline", clean];
+    let (ranked, _) = json(
+        &dir,
+        &[&["diagnose", worn, "--json", "-"], &beside[..]].concat(),
+    );
+    let first = &ranked["candidates"][0];
+    assert_eq!(first["effect"], "lower-threshold-shift");
+    same(of(&first["parameters"], "value"), "ranked");
+    let add = ["add", "lower-threshold-shift", "--campaign", worn];
+    let add = [&add[..], &beside, &["--out", "added.toml"]].concat();
+    assert!(run(dir.path(), &add).status.success());
+    let added = hitch_model_file::named(dir.path().join("added.toml").to_str().unwrap()).unwrap();
+    let effect = added
+        .effects
+        .iter()
+        .find(|added| added.effect.id() == "lower-threshold-shift");
+    same(effect.unwrap().values[0], "added");
 }
 
 #[test]

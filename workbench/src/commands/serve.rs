@@ -1,6 +1,7 @@
 //! `hitch serve`: the interactive page, local only.
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use crate::baseline_arg::BaselineArg;
 use crate::ecu::Runner;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
@@ -25,6 +26,8 @@ pub struct Args {
     campaign: Option<PathBuf>,
     #[command(flatten)]
     model: ModelArg,
+    #[command(flatten)]
+    baseline: BaselineArg,
     /// Port on 127.0.0.1; 0 selects a free one
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     port: u16,
@@ -59,6 +62,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let source = Source {
         campaign: args.campaign.clone(),
         model: args.model.load()?,
+        baseline: args.baseline.folder().map(Path::to_owned),
     };
     serve::run(source, args.loop_source()?, args.port, !args.no_browser)
 }

@@ -94,7 +94,11 @@ impl Evaluated {
     /// Evaluates a model without changing it. The loads are estimated within the tolerance of their weighing, and the clock
     /// offsets within theirs, as before a search for effects: the error is the one that `explain` starts from.
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
-        let experiment = Experiment::new(campaign, model);
+        Self::prepared(Experiment::new(campaign, model), model)
+    }
+
+    /// The same on a prepared campaign.
+    pub fn prepared(experiment: Experiment, model: &Model) -> Self {
         let fit = fit_base(Problem::new(&experiment, model));
         Self::fitted(Arc::new(experiment), fit, model)
     }

@@ -240,6 +240,7 @@ mod tests {
         let source = Source {
             campaign: None,
             model: hitch_model_file::nominal(),
+            baseline: None,
         };
         let mut session = Session::new(Arc::new(source.read().unwrap()));
         for title in ["one", "two"] {

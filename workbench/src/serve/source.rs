@@ -10,6 +10,7 @@ use hitch_plant::Model;
 use crate::comparison::Evaluated;
 use crate::demonstration;
 use crate::error::Error;
+use crate::explanation::Since;
 
 /// Sources of campaign and model.
 #[derive(Debug, Clone)]
@@ -18,6 +19,8 @@ pub struct Source {
     pub campaign: Option<PathBuf>,
     /// The initial model.
     pub model: Model,
+    /// Folder of the campaign that the model was adopted from: what it leaves there is subtracted.
+    pub baseline: Option<PathBuf>,
 }
 
 /// A campaign, and the model evaluated on it.
@@ -35,13 +38,26 @@ impl Source {
     /// Reads the campaign and evaluates the model.
     ///
     /// # Errors
-    /// If the campaign is invalid.
+    /// If the campaign or the baseline is invalid.
     pub fn read(&self) -> Result<Subject, Error> {
         let campaign = match &self.campaign {
             Some(folder) => Campaign::load_with(folder, self.model.linkage())?,
             None => demonstration::campaign()?,
         };
-        Ok(Subject::new(&campaign, self.model.clone()))
+        let Some(folder) = &self.baseline else {
+            return Ok(Subject::new(&campaign, self.model.clone()));
+        };
+        let baseline = Campaign::load_with(folder, self.model.linkage())?;
+        let since = Since::new(&baseline, self.model.clone());
+        let (experiment, name) = (since.subtracted_from(&campaign), &baseline.name);
+        Ok(Subject {
+            description: format!(
+                "{} Measured values are less what the model leaves on {name}, where that has the same states.",
+                campaign.description
+            ),
+            start: Arc::new(Evaluated::prepared(experiment, &since.model)),
+            model: since.model,
+        })
     }
 }
 

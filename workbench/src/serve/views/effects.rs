@@ -8,9 +8,7 @@ use hitch_identification::selection::candidate;
 use hitch_plant::{Effect, full_name};
 use serde_json::{Value, json};
 
-use crate::explanation::{
-    self, Candidate, Corrected, Step, explained as share_explained, parameters,
-};
+use crate::explanation::{Candidate, Corrected, Step, explained as share_explained, parameters};
 use crate::serve::session::{Explained, Ranking, Session};
 
 /// Texts of an effect.
