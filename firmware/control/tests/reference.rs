@@ -4,7 +4,7 @@ use hitch_control::reference::{ReferenceControl, Situation};
 use hitch_quantities::units::{
     Count, MicrometrePerSecond, MilliDegree, MillimetrePerSecond, Newton, PerMille, SupplyShare,
 };
-use hitch_quantities::{Calibration, Function, Inputs, Reason};
+use hitch_quantities::{Calibration, Function, Inputs, Reason, Trouble};
 
 const SET: i32 = 18_000;
 const LEVER: i32 = 62_000;
@@ -57,10 +57,10 @@ impl Bench {
             lever: MilliDegree(self.lever),
             angle: MilliDegree(self.set_point),
             highest: MilliDegree(self.highest),
-            moves: false,
             valve_speeds: [MicrometrePerSecond(150_000); 2],
         };
         let before = self.set_point;
+        self.layer.sense(&inputs, false, &self.calibration);
         self.set_point = self.layer.step(&inputs, &situation, &self.calibration).0;
         self.set_point - before
     }
@@ -195,4 +195,45 @@ fn without_speeds_what_the_guard_has_raised_stays() {
     bench.run(5_000);
     assert_eq!(bench.layer.reason(), Some(Reason::Holds));
     assert!(bench.set_point > LEVER + 1_000, "{}", bench.set_point);
+}
+
+#[test]
+fn a_lost_pin_is_reported_whatever_is_selected_and_has_the_command() {
+    for function in [Function::Position, Function::Draft] {
+        let mut bench = Bench::new(function);
+        bench.calibration.slip.highest_limit = PerMille(0);
+        bench.run(1_000);
+        assert_eq!(bench.layer.trouble(), None);
+        assert!(
+            bench
+                .layer
+                .draft()
+                .is_some_and(|draft| (draft.0 - SET).abs() < 50)
+        );
+        bench.inputs.left_pin = Some(SupplyShare(0));
+        bench.run(bench.calibration.draft.check_time.0);
+        bench.layer.end();
+        assert_eq!(bench.layer.trouble(), Some(Trouble::PinRange));
+        assert_eq!(bench.layer.draft(), None);
+    }
+}
+
+#[test]
+fn the_draft_is_followed_while_the_layer_has_not_the_command() {
+    let mut bench = Bench::new(Function::Draft);
+    bench.run(1_000);
+    // Quick lift raises the implement; the draft at its end is the present one at once.
+    bench.layer.end();
+    for step in 0..2_000 {
+        let output = Some(SupplyShare(50_000 + step % 5));
+        let inputs = Inputs {
+            left_pin: output,
+            right_pin: output,
+            ..bench.inputs
+        };
+        bench.layer.sense(&inputs, false, &bench.calibration);
+    }
+    bench.draft = 0;
+    bench.step();
+    assert_eq!(bench.layer.reason(), Some(Reason::AboveGround));
 }

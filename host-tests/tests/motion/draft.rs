@@ -4,6 +4,7 @@ use hitch_controller::Controller;
 use hitch_field::draft::Texture;
 use hitch_field::soil::{SoilPlan, Stretch};
 use hitch_field::strength::StrengthConstants;
+use hitch_quantities::calibration::field_parameters::DraftParameters;
 use hitch_quantities::units::{Count, MillimetrePerSecond, Newton, PerMille, SupplyShare};
 use hitch_quantities::{Calibration, Function, Inputs, Reason, Trouble, ValidCalibration};
 use host_tests::field_rig::pass::{Comparison, DRAFT_N, LINK_DEPTH_M, Pass, fitted, fitted_with};
@@ -59,6 +60,9 @@ fn add_any(random: &mut fastrand::Rng, inputs: &mut Inputs) {
     inputs.function = word(-1, 6).map(Count);
 }
 
+/// Steps in which missing pins are not lost yet.
+const CHECK_STEPS: usize = DraftParameters::NOMINAL.check_time.0 as usize - 1;
+
 #[test]
 fn a_machine_without_pins_or_settings_behaves_as_before_to_the_last_bit() {
     let traces = [trace::recorded().unwrap(), trace::random(11, 50_000)];
@@ -69,7 +73,11 @@ fn a_machine_without_pins_or_settings_behaves_as_before_to_the_last_bit() {
         let told = outputs(steps, nominal(), |_, inputs| add_any(&mut random, inputs));
         assert!(plain == told, "signals of what is not fitted");
         let calibration = fitted_with(|calibration| calibration.slip.highest_limit.0 = 0);
-        let fitted = outputs(steps, calibration, |_, _| {});
+        let mut fitted = outputs(steps, calibration, |_, _| {});
+        // Only the missing pins are reported.
+        for outputs in &mut fitted[CHECK_STEPS..] {
+            assert_eq!(outputs.trouble.take(), Some(Trouble::PinRange));
+        }
         assert!(plain == fitted, "fitted, and position control selected");
     }
 }

@@ -135,7 +135,6 @@ impl Control {
             lever,
             angle: sensed.angle,
             highest,
-            moves: self.phase.is_moving(),
             valve_speeds,
         };
         self.reference.step(inputs, &situation, &self.calibration)

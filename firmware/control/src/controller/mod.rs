@@ -171,6 +171,10 @@ impl Control {
     /// One step of 1 ms. `held_back`: the envelope has limited the request of the last step.
     pub fn step(&mut self, inputs: &Inputs, held_back: bool) -> ControlRequest {
         self.recovered = false;
+        if ReferenceControl::is_fitted(&self.calibration) {
+            let moves = self.phase.is_moving();
+            self.reference.sense(inputs, moves, &self.calibration);
+        }
         let sensed = self.sensors.judge(inputs, &self.calibration.sensors);
         let currents = match sensed.and_then(|sensed| self.run(&sensed, inputs, held_back)) {
             Ok(currents) => currents,

@@ -48,6 +48,7 @@ impl Control {
             drop: self.load.drop(),
             reference: self.reference.reason(),
             trouble: self.reference.trouble(),
+            draft: self.reference.draft(),
             ..Outputs::default()
         }
     }

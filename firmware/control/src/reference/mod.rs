@@ -46,8 +46,6 @@ pub struct Situation {
     pub angle: MilliDegree,
     /// Upper limit of the set point.
     pub highest: MilliDegree,
-    /// The hitch moves.
-    pub moves: bool,
     /// Largest piston speed of lift and lowering valve.
     pub valve_speeds: [MicrometrePerSecond; 2],
 }
@@ -57,6 +55,7 @@ pub struct Situation {
 pub struct ReferenceControl {
     draft: DraftSignal,
     slip: SlipSignal,
+    sensed: Sensed,
     active: Active,
     guard: SlipGuard,
     /// Set point before its steps; `None`: the lever's.
@@ -64,7 +63,26 @@ pub struct ReferenceControl {
     /// Set point in steps.
     stepped: MilliDegree,
     reason: Option<Reason>,
-    trouble: Option<Trouble>,
+}
+
+/// What the sensors say in a step.
+#[derive(Clone, Copy, Debug)]
+struct Sensed {
+    draft: Draft,
+    /// The last measured draft; `None` while the pins are lost.
+    measured: Option<Newton>,
+    /// Slip and its limit; `None` where it is not limited.
+    slip: Result<Option<(PerMille, PerMille)>, Trouble>,
+}
+
+impl Default for Sensed {
+    fn default() -> Self {
+        Self {
+            draft: Draft::Suspect,
+            measured: None,
+            slip: Ok(None),
+        }
+    }
 }
 
 impl ReferenceControl {
@@ -80,7 +98,6 @@ impl ReferenceControl {
         self.guard = SlipGuard::default();
         self.used = None;
         self.reason = None;
-        self.trouble = None;
     }
 
     /// What determines the set point, if it is not the lever alone.
@@ -89,21 +106,44 @@ impl ReferenceControl {
         self.reason
     }
 
-    /// The lost sensor of a selected function.
+    /// The lost sensor; a pin before a speed.
     #[must_use]
-    pub const fn trouble(&self) -> Option<Trouble> {
-        self.trouble
+    pub fn trouble(&self) -> Option<Trouble> {
+        match self.sensed.draft {
+            Draft::Lost(trouble) => Some(trouble),
+            _ => self.sensed.slip.err(),
+        }
     }
 
-    /// One step: the set point.
+    /// The draft; `None` while the pins are lost.
+    #[must_use]
+    pub const fn draft(&self) -> Option<Newton> {
+        self.sensed.measured
+    }
+
+    /// One millisecond of the sensors, in any mode: what determines the set point must not keep them from being filtered and
+    /// monitored. `moves`: the hitch moves.
+    pub fn sense(&mut self, inputs: &Inputs, moves: bool, calibration: &Calibration) {
+        let draft = self.draft.step(inputs, moves, &calibration.draft);
+        self.sensed = Sensed {
+            draft,
+            measured: match draft {
+                Draft::Measured(draft) => Some(draft),
+                Draft::Suspect => self.sensed.measured,
+                Draft::Lost(_) => None,
+            },
+            slip: self.limited_slip(inputs, calibration),
+        };
+    }
+
+    /// One step: the set point, by what was sensed before.
     pub fn step(
         &mut self,
         inputs: &Inputs,
         situation: &Situation,
         calibration: &Calibration,
     ) -> MilliDegree {
-        let draft = self.draft.step(inputs, situation.moves, &calibration.draft);
-        let slip = self.limited_slip(inputs, calibration);
+        let Sensed { draft, slip, .. } = self.sensed;
         let present = self.used.unwrap_or(situation.lever);
         let mix = mix(inputs);
         let gains = self.gains(calibration.draft.crossover, calibration);
@@ -124,7 +164,6 @@ impl ReferenceControl {
             Active::Lever if was_slipping && slip.is_err() => choice.held(),
             active => active.next(&choice, gains, &calibration.lock),
         };
-        self.note_trouble(draft, slip, choice.function);
         let slip = slip.ok().flatten();
         self.demand(&choice, slip, (gains, mix), situation, calibration)
     }
@@ -207,18 +246,6 @@ impl ReferenceControl {
         let parameters = &calibration.draft;
         let speed = self.slip.ground_speed().unwrap_or(parameters.assumed_speed);
         Gains::of(crossover, parameters.length, speed)
-    }
-
-    fn note_trouble(
-        &mut self,
-        draft: Draft,
-        slip: Result<Option<(PerMille, PerMille)>, Trouble>,
-        function: Function,
-    ) {
-        self.trouble = match draft {
-            Draft::Lost(trouble) if function != Function::Position => Some(trouble),
-            _ => slip.err(),
-        };
     }
 
     /// Why the set point is what it is: `demand` within `lowest` and the upper limit is `limited`, and `raised` by the guard.

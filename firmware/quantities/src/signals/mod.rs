@@ -227,8 +227,10 @@ pub struct Outputs {
     pub lower_duty: Duty,
     /// What determines the set point; `None`: the lever, an implement or quick lift alone.
     pub reference: Option<Reason>,
-    /// Sensor whose loss keeps the selected function of draft or slip control from working.
+    /// Lost sensor of draft or slip control.
     pub trouble: Option<Trouble>,
+    /// Draft without its noise, positive against the direction of travel; `None`: no pins, or they are lost.
+    pub draft: Option<Newton>,
 }
 
 /// Size of the image of [`Inputs`].
@@ -336,7 +338,7 @@ impl Inputs {
 
 impl Outputs {
     /// State, fault (0: none), trip (0: none) and reference with trouble (low and high half of a byte, 0: none), then the
-    /// values in the order of the fields.
+    /// values in the order of the fields. The draft is not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; OUTPUT_BYTES] {
         let mut writer = Writer::new([0; OUTPUT_BYTES]);
