@@ -128,12 +128,15 @@ fn scalar_range(index: usize) -> Option<WordRange> {
     SCALARS.get(index).map(Scalar::range)
 }
 
-/// The first scalar of a block that is outside its range, with the name of its group.
-pub(super) fn scalar_out_of_range(calibration: &Calibration) -> Option<(&'static str, OutOfRange)> {
+/// The first scalar of a block that is outside its range, with the name of its group. The block is not changed; a copy of it would
+/// take its place on the stack.
+pub(super) fn scalar_out_of_range(
+    calibration: &mut Calibration,
+) -> Option<(&'static str, OutOfRange)> {
     let mut tables_left = SCALARS_WORD;
     let mut scalars = (0..SCALAR_COUNT).zip(&SCALARS);
     let mut outside = None;
-    calibration.clone().for_each_word(&mut |word| {
+    calibration.for_each_word(&mut |word| {
         if tables_left > 0 {
             tables_left -= 1;
         } else if let Some((index, scalar)) = scalars.next()
