@@ -9,7 +9,9 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::limit::Limit;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::baseline::Baseline;
-use hitch_identification::explanation::explain::{Explanation, Verdict, explain_with, fit_base};
+use hitch_identification::explanation::explain::{
+    Explanation, Verdict, explain, explain_with, fit_base,
+};
 use hitch_identification::explanation::starting_point::StartingPoint;
 use hitch_identification::search::subset::{Accuracy, Options};
 use hitch_plant::Model;

@@ -65,6 +65,7 @@ impl Model {
     }
 
     /// The constants.
+    #[inline]
     #[must_use]
     pub fn constants(&self) -> &Constants {
         &self.constants
@@ -92,6 +93,7 @@ impl Model {
     }
 
     /// The linkage.
+    #[inline]
     #[must_use]
     pub fn linkage(&self) -> &Arc<Linkage> {
         &self.linkage

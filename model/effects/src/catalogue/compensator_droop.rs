@@ -142,6 +142,9 @@ fn fall_with_flow(
 }
 
 fn fall_with_load(slope: f64, hooks: &mut EffectHooks) {
+    if slope == 0.0 {
+        return;
+    }
     hooks.margin.push(Box::new(move |cylinder_pressure_pa| {
         -slope * cylinder_pressure_pa
     }));

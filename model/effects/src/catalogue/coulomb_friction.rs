@@ -6,7 +6,7 @@
 //! de Wit 1995), until vibration of the running machine has relaxed them. Typical values are 100 to 300 N plus 1 to 4 %
 //! of the pressure force for a 76 mm cylinder, and some tenths of a millimetre of deflection.
 
-use hitch_plant::hooks::effect_hooks::Bristles;
+use hitch_plant::hooks::elements::Bristles;
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;

@@ -59,9 +59,10 @@ pub static ENTRAINED_AIR: Described = Described {
 fn attach(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
     let (ratio, polytropic) = (values[0] / (1.0 - values[0]), values[1]);
     let liquid_pa = conditions.constants.oil.bulk_modulus_pa;
+    let exponent = 1.0 / polytropic;
     hooks.stiffness_factor.push(Box::new(move |pressure_pa| {
         let absolute_pa = (ATMOSPHERE_PA + pressure_pa).max(LOWEST_PA);
-        let squeezed = ratio * (ATMOSPHERE_PA / absolute_pa).powf(1.0 / polytropic);
+        let squeezed = ratio * (ATMOSPHERE_PA / absolute_pa).powf(exponent);
         (1.0 + squeezed) / (1.0 + squeezed * liquid_pa / (polytropic * absolute_pa))
     }));
 }

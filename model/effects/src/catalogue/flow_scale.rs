@@ -4,7 +4,7 @@
 //! saturate 6.7 % (lift) and 3.4 % (lowering) below the manufacturer's values. With a different shape of the metering
 //! edge the deviation depends on the opening: the scale increases linearly with it.
 
-use hitch_plant::hooks::effect_hooks::FlowFactor;
+use hitch_plant::hooks::elements::FlowFactor;
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;

@@ -4,7 +4,8 @@
 //! contact (Bekker with n = 1, damped as by Hunt & Crossley). Floors have 1e6 to 1e7 N/m, soil 5e4 to 5e5 N/m. With
 //! viscous damping of the ground, `F = k z + d z'` with 1e3 to 1e4 N s/m.
 
-use hitch_plant::hooks::effect_hooks::{Ground, RunConditions};
+use hitch_plant::hooks::effect_hooks::RunConditions;
+use hitch_plant::hooks::elements::Ground;
 use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;

@@ -4,7 +4,7 @@
 //! of oil; in cm3/bar, 0.03 to 0.06. Rubber is viscoelastic: a share of the compliance creeps (Kelvin-Voigt), which
 //! reduces the frequency of a fast oscillation less than that of a slow one and damps both.
 
-use hitch_plant::hooks::effect_hooks::Hose;
+use hitch_plant::hooks::elements::Hose;
 use hitch_plant::units::pa_from_bar;
 use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 

@@ -5,7 +5,8 @@
 //! hold at the pump's full flow. Typical values are 10 to 25 bar at 48 l/min; valves crack at 0.85 to 0.93 of their
 //! setting.
 
-use hitch_plant::hooks::effect_hooks::{EffectHooks, ReliefOverride, RunConditions};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
+use hitch_plant::hooks::elements::ReliefOverride;
 use hitch_plant::units::pa_from_bar;
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 

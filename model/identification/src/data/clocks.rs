@@ -58,9 +58,17 @@ fn later(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     let even = |pair: &[f64]| (pair[1] - pair[0] - step_s).abs() <= EVEN * step_s;
     let steps = delay_s / step_s;
     if steps.abs() > last as f64 || !time_s.windows(2).all(even) {
-        return (0..=last)
-            .map(|sample| value_at(time_s, values, time_s[sample] - delay_s))
-            .collect();
+        // The times rise, so the search for each goes on where that for the one before ended.
+        let mut passed = 0;
+        let value = |now_s: &f64| {
+            let at_s = (now_s - delay_s).clamp(time_s[0], time_s[last]);
+            passed += time_s[passed..]
+                .iter()
+                .take_while(|time_s| **time_s <= at_s)
+                .count();
+            value_after(time_s, values, at_s, passed)
+        };
+        return time_s.iter().map(value).collect();
     }
     // Nearly all logs are equidistant: each sample then has the same interpolation weights.
     let (shift, share) = (steps.ceil(), steps.ceil() - steps);
@@ -81,8 +89,14 @@ fn later(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
 fn value_at(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
     let last = values.len() - 1;
     let at_s = at_s.clamp(time_s[0], time_s[last]);
-    let later = time_s.partition_point(|&time_s| time_s <= at_s);
-    let cell = later.clamp(1, last) - 1;
+    let passed = time_s.partition_point(|&time_s| time_s <= at_s);
+    value_after(time_s, values, at_s, passed)
+}
+
+/// Interpolated value of a record at a time within it, at which `passed` of its samples have passed.
+fn value_after(time_s: &[f64], values: &[f64], at_s: f64, passed: usize) -> f64 {
+    let last = values.len() - 1;
+    let cell = passed.clamp(1, last) - 1;
     let share = (at_s - time_s[cell]) / (time_s[cell + 1] - time_s[cell]);
     let around = [cell.saturating_sub(1), cell, cell + 1, (cell + 2).min(last)];
     held(around.map(|k| values[k]), catmull_rom(share))
@@ -127,6 +141,21 @@ mod tests {
                 let expected = value_at(&time_s, &values, time_s[sample] - delay_s);
                 assert!((moved - expected).abs() < 1e-9, "{delay_s} s, {sample}");
             }
+        }
+    }
+
+    /// The search along a log with uneven steps finds the cells of a search in the whole log.
+    #[test]
+    fn uneven_steps_are_searched_in_order() {
+        let uneven = |k: u32| 3.0 + 0.02 * f64::from(k) + 0.009 * (7.0 * f64::from(k)).sin();
+        let time_s: Vec<f64> = (0..40).map(uneven).collect();
+        let values: Vec<f64> = time_s.iter().map(|t| (9.0 * t).sin()).collect();
+        for delay_s in [-1.0, -0.061, -0.02, -0.003, 0.0, 0.001, 0.033, 0.5, 2.0] {
+            let moved = later(&time_s, &values, delay_s);
+            let expected = time_s
+                .iter()
+                .map(|t| value_at(&time_s, &values, t - delay_s));
+            assert_eq!(moved, expected.collect::<Vec<f64>>(), "{delay_s} s");
         }
     }
 }

@@ -29,14 +29,26 @@ struct FreedConstants {
     explained_share: f64,
 }
 
-/// Covariance of the constants of a fit, in units of the prior's; residuals beyond noise widen it. `None` if they are
-/// not free, or the covariance is singular.
+/// Mean square error of the constants of a fit, in units of the prior's. `None` if they are not free, or the covariance is
+/// singular.
+///
+/// The covariance is a sandwich: the scatter of the slopes of the cost between stretches of the campaign, between the curvatures
+/// (Huber 1967, White 1982). A misfit of the model pulls at the constants in each stretch differently, more than noise does. The
+/// step that the whole slope still asks for is added: a hitch that comes to its stop just so, or not, is a step of the cost, at
+/// which a descent may end before its minimum.
 pub(crate) fn covariance(problem: Problem<'_>, fit: &Fit) -> Option<DMatrix<f64>> {
     fit.estimate.constants.as_ref()?;
     let unit = Penalty::given(problem.experiment, fit).unit;
-    let (precision, _) = Sensitivities::at(problem, fit).normal_equations();
+    let sensitivities = Sensitivities::at(problem, fit);
+    let (precision, pull) = sensitivities.normal_equations();
+    let size = precision.nrows();
+    let root = precision.cholesky()?;
+    let step = root.solve(&pull);
     // The prior of the fit is narrower by the unit: see `shares`.
-    Some(precision.cholesky()?.inverse() * unit)
+    let scatter =
+        sensitivities.scatter_of_slopes(problem.experiment) + DMatrix::identity(size, size) * unit;
+    let inverse = root.inverse();
+    Some(&inverse * scatter * &inverse + &step * step.transpose())
 }
 
 impl FreedConstants {

@@ -1,12 +1,20 @@
 //! Sensitivities of the residuals to free constants, and their normal equations.
 
-use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::data::experiment::{Experiment, ReadyRun};
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{Jacobian, huber};
+use crate::estimation::jacobian::{Jacobian, dot, huber};
+use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::selection::candidate::{jacobian_by, slow_columns};
+
+/// Length of a stretch, s: the errors of a move and of the rest after it are one error, those of two moves are two.
+const STRETCH_S: f64 = 2.0;
 
 /// Sensitivities at a fit with free constants.
 pub(crate) struct Sensitivities {
@@ -33,6 +41,42 @@ impl Sensitivities {
         matches!(self.jacobian.shared[column], Shared::Constants(_))
     }
 
+    /// Scatter of the slopes of the cost over the constants between the stretches of the campaign, all other parameters
+    /// eliminated: sum of the outer products, corrected for the number of constants that the slopes add up to zero for.
+    pub fn scatter_of_slopes(&self, experiment: &Experiment) -> DMatrix<f64> {
+        let columns = 0..self.jacobian.shared.len();
+        let own: Vec<usize> = columns.filter(|&column| self.is_constant(column)).collect();
+        let others =
+            NuisanceProjection::keeping(&self.jacobian, &self.estimate, |k| !self.is_constant(k));
+        let signatures: Vec<Vec<Vec<f64>>> = own
+            .par_iter()
+            .map(|&column| {
+                let runs = self.jacobian.runs.iter();
+                others.project(runs.map(|run| run.shared[column].clone()).collect())
+            })
+            .collect();
+        let mut scatter = DMatrix::zeros(own.len(), own.len());
+        let mut stretches = 0;
+        for (index, run) in experiment.runs.iter().enumerate() {
+            let (residual, samples) = (&self.residuals[index], run.len());
+            for stretch in stretches_of(run) {
+                let slope = |signature: &Vec<Vec<f64>>| -> f64 {
+                    let signature = &signature[index];
+                    let of_channel = |channel: usize| {
+                        let at = channel * samples + stretch.start..channel * samples + stretch.end;
+                        dot(&signature[at.clone()], &residual[at])
+                    };
+                    (0..4).map(of_channel).sum()
+                };
+                let slopes = DVector::from_iterator(own.len(), signatures.iter().map(slope));
+                scatter += &slopes * slopes.transpose();
+                stretches += 1;
+            }
+        }
+        let left = (stretches as f64 - own.len() as f64).max(1.0);
+        scatter * (f64::from(stretches) / left)
+    }
+
     /// Precision of the constants with all other parameters eliminated, in units of the prior's, and half of the negative
     /// gradient of the cost along them. Parameters at an end of their range stay there.
     pub fn normal_equations(&self) -> (DMatrix<f64>, DVector<f64>) {
@@ -47,6 +91,20 @@ impl Sensitivities {
         let others: Vec<usize> = others.into_iter().filter(can_move).collect();
         eliminated(&matrix, &right, &own, &others)
     }
+}
+
+/// The stretches of a run: [`STRETCH_S`] each.
+fn stretches_of(run: &ReadyRun) -> Vec<Range<usize>> {
+    let time_s = &run.drive.time_s;
+    let mut stretches = Vec::new();
+    let mut start = 0;
+    for sample in 1..=time_s.len() {
+        if sample == time_s.len() || time_s[sample] - time_s[start] >= STRETCH_S {
+            stretches.push(start..sample);
+            start = sample;
+        }
+    }
+    stretches
 }
 
 /// The normal equations of the unknowns `kept`, with `others` eliminated.

@@ -13,12 +13,14 @@ pub struct Compensator {
 
 impl Compensator {
     /// Pressure of a pump of fixed displacement with the lift valve closed, Pa.
+    #[inline]
     #[must_use]
     pub fn idle_pressure_pa(&self) -> f64 {
         self.margin_pa
     }
 
     /// Pump pressure while lifting against `load_pressure_pa`, Pa.
+    #[inline]
     #[must_use]
     pub fn lifting_pressure_pa(&self, load_pressure_pa: f64) -> f64 {
         load_pressure_pa + self.margin_pa

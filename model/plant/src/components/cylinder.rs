@@ -17,12 +17,14 @@ pub struct Cylinder {
 
 impl Cylinder {
     /// Area of all pistons, m2.
+    #[inline]
     #[must_use]
     pub fn area_m2(&self) -> f64 {
         f64::from(self.count) * std::f64::consts::FRAC_PI_4 * self.bore_m * self.bore_m
     }
 
     /// Oil volume at piston travel `piston_m`, m3.
+    #[inline]
     #[must_use]
     pub fn volume_m3(&self, piston_m: f64) -> f64 {
         self.dead_volume_m3 + self.area_m2() * piston_m
@@ -30,6 +32,7 @@ impl Cylinder {
 
     /// Whether an end stop carries the driving force on a piston at `piston_m` with speed `speed_m_s` and acceleration
     /// `acceleration_m_s2`.
+    #[inline]
     #[must_use]
     pub fn stops(&self, piston_m: f64, speed_m_s: f64, acceleration_m_s2: f64) -> bool {
         let inwards = speed_m_s <= 0.0 && acceleration_m_s2 <= 0.0;

@@ -25,6 +25,7 @@ impl Lag {
     }
 
     /// Advances by `dt_s` while the input changes linearly to `input`; returns the output.
+    #[inline]
     pub fn advance(&mut self, input: f64, dt_s: f64) -> f64 {
         let tau_s = self.time_constant_s;
         if tau_s > 0.0 && dt_s > 0.0 {

@@ -218,6 +218,7 @@ impl Linkage {
     }
 
     /// The posture at piston travel `piston_m`, clamped to the stroke.
+    #[inline]
     #[must_use]
     pub fn at(&self, piston_m: f64) -> Posture {
         let (node, share) = self.cell(piston_m);
@@ -232,6 +233,7 @@ impl Linkage {
     }
 
     /// Only the transmission dh/dx at piston travel `piston_m`.
+    #[inline]
     #[must_use]
     pub fn dh_dx(&self, piston_m: f64) -> f64 {
         let (node, share) = self.cell(piston_m);
@@ -240,6 +242,7 @@ impl Linkage {
     }
 
     /// The transmission dh/dx and its derivative, 1/m, at piston travel `piston_m`.
+    #[inline]
     #[must_use]
     pub fn transmission(&self, piston_m: f64) -> (f64, f64) {
         let (node, share) = self.cell(piston_m);
@@ -295,6 +298,7 @@ impl Linkage {
         )
     }
 
+    #[inline]
     fn cell(&self, piston_m: f64) -> (usize, f64) {
         let position = (piston_m * self.cells_per_m).clamp(0.0, CELLS as f64);
         let node = (position as usize).min(CELLS - 1);

@@ -13,24 +13,28 @@ pub struct Masses {
 
 impl Masses {
     /// Static piston force, N, for a load in kg at a transmission `dh/dx` (virtual work; paper, equations 1 to 4).
+    #[inline]
     #[must_use]
     pub fn weight_force_n(&self, load_kg: f64, dh_dx: f64) -> f64 {
         (load_kg + self.dead_weight_kg) * GRAVITY_M_S2 * dh_dx
     }
 
     /// Share of the load in the weight; the rest is dead weight.
+    #[inline]
     #[must_use]
     pub fn load_share(&self, load_kg: f64) -> f64 {
         load_kg / (load_kg + self.dead_weight_kg)
     }
 
     /// Inertia at the piston, kg.
+    #[inline]
     #[must_use]
     pub fn inertia_kg(&self, load_kg: f64, dh_dx: f64) -> f64 {
         (load_kg + self.dead_weight_kg) * dh_dx * dh_dx + self.piston_kg
     }
 
     /// Half the derivative of the inertia over piston travel, kg/m: the `M' v2 / 2` term of Lagrange's equation.
+    #[inline]
     #[must_use]
     pub fn half_inertia_slope_kg_m(&self, load_kg: f64, dh_dx: f64, d2h_dx2_1_m: f64) -> f64 {
         (load_kg + self.dead_weight_kg) * dh_dx * d2h_dx2_1_m

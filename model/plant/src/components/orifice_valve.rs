@@ -19,6 +19,7 @@ pub struct OrificeValve {
 
 impl OrificeValve {
     /// Flow, m3/s, over a drop in Pa with a flow of `reference_flow_m3_s` at the reference drop; zero against the drop.
+    #[inline]
     #[must_use]
     pub fn flow_m3_s(&self, reference_flow_m3_s: f64, drop_pa: f64) -> f64 {
         if drop_pa <= 0.0 {

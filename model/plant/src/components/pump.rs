@@ -29,6 +29,7 @@ pub struct Pump {
 
 impl Pump {
     /// Largest net delivery, m3/s.
+    #[inline]
     #[must_use]
     pub fn flow_m3_s(&self) -> f64 {
         self.theoretical_flow_m3_s * self.volumetric_efficiency

@@ -9,6 +9,7 @@ pub struct ReliefValve {
 
 impl ReliefValve {
     /// Pump pressure, Pa, limited to the set pressure.
+    #[inline]
     #[must_use]
     pub fn limit_pa(&self, wanted_pa: f64) -> f64 {
         wanted_pa.min(self.set_pressure_pa)

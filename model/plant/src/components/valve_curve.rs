@@ -74,6 +74,7 @@ impl ValveCurve {
     }
 
     /// Flow at the reference drop, m3/s, for a current in A.
+    #[inline]
     #[must_use]
     pub fn flow_m3_s(&self, current_a: f64) -> f64 {
         // Valves are closed most of the time, and this is in the plant's innermost loop.
@@ -107,6 +108,7 @@ impl ValveCurve {
     }
 
     /// Current up to which the valve is closed, A: the last point without flow before the first one with flow.
+    #[inline]
     #[must_use]
     pub fn threshold_a(&self) -> f64 {
         self.threshold_a
@@ -123,6 +125,7 @@ impl ValveCurve {
     }
 
     /// Largest flow at the reference drop, m3/s.
+    #[inline]
     #[must_use]
     pub fn saturation_m3_s(&self) -> f64 {
         self.flow_m3_s[self.flow_m3_s.len() - 1]

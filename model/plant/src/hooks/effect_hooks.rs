@@ -10,6 +10,7 @@ use dyn_clone::{DynClone, clone_trait_object};
 
 use crate::components::linkage::Linkage;
 use crate::constants::Constants;
+use crate::hooks::elements::{Bristles, FlowFactor, Ground, Hose, Line, ReliefOverride};
 use crate::hooks::place::Place;
 use crate::hooks::reading::Reading;
 use crate::hooks::signals::Signals;
@@ -35,6 +36,7 @@ pub struct Currents {
 
 impl Currents {
     /// Applies a function to both currents.
+    #[inline(always)]
     #[must_use]
     pub fn map(self, mut change: impl FnMut(Valve, f64) -> f64) -> Self {
         Self {
@@ -44,6 +46,7 @@ impl Currents {
     }
 
     /// Linear interpolation between these currents and others.
+    #[inline(always)]
     #[must_use]
     pub fn towards(self, to: Self, share: f64) -> Self {
         Self {
@@ -53,6 +56,7 @@ impl Currents {
     }
 
     /// Largest difference of a current, A.
+    #[inline(always)]
     #[must_use]
     pub fn largest_difference_a(self, other: Self) -> f64 {
         let lift_a = (self.lift_a - other.lift_a).abs();
@@ -90,151 +94,6 @@ pub type Law = Box<dyn Fn(f64) -> f64 + Send + Sync>;
 pub type WeightFactor = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
 /// A force on the piston against its motion, N, from its state and the weight's force on it, N.
 pub type FrictionForce = Box<dyn Fn(&MechanicalState, f64) -> f64 + Send + Sync>;
-
-/// A relief valve whose pressure increases with the flow through it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ReliefOverride {
-    /// Pressure increase from cracking to the pump's full flow, Pa.
-    pub override_pa: f64,
-    /// Difference of the set pressure and the cracking pressure, Pa.
-    pub below_setting_pa: f64,
-}
-
-/// A flow resistance in series with an orifice: a pipe, a filter, an open seat.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Line {
-    /// Turbulent coefficient: pressure per square of the flow, Pa s2/m6.
-    pub turbulent_pa_s2_m6: f64,
-    /// Laminar coefficient: pressure per flow, Pa s/m3.
-    pub laminar_pa_s_m3: f64,
-}
-
-impl Line {
-    /// Whether it has no resistance.
-    #[must_use]
-    pub fn is_free(&self) -> bool {
-        *self == Self::default()
-    }
-
-    /// Pressure drop, Pa, at a flow, m3/s.
-    #[must_use]
-    pub fn pressure_pa(&self, flow_m3_s: f64) -> f64 {
-        (self.laminar_pa_s_m3 + self.turbulent_pa_s2_m6 * flow_m3_s) * flow_m3_s
-    }
-
-    /// Flow through an orifice in series with it, m3/s, at a pressure, Pa, that would drive `free_m3_s` through the
-    /// orifice alone: the root of `p = (p / Q_free^2 + turbulent) Q^2 + laminar Q`.
-    #[must_use]
-    pub fn behind_orifice_m3_s(&self, free_m3_s: f64, pressure_pa: f64) -> f64 {
-        let narrower = 1.0 + self.turbulent_pa_s2_m6 * free_m3_s * free_m3_s / pressure_pa;
-        let half = 0.5 * self.laminar_pa_s_m3 * free_m3_s / pressure_pa;
-        free_m3_s / (half + (half * half + narrower).sqrt())
-    }
-}
-
-/// A factor on a valve's flow.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlowFactor {
-    /// Factor at half the largest flow.
-    pub at_half: f64,
-    /// Increase of the factor from there to the largest flow.
-    pub growth: f64,
-}
-
-impl Default for FlowFactor {
-    fn default() -> Self {
-        Self {
-            at_half: 1.0,
-            growth: 0.0,
-        }
-    }
-}
-
-impl FlowFactor {
-    /// The factor at a tabulated flow; the largest tabulated flow is `largest`.
-    #[must_use]
-    pub fn at(&self, flow: f64, largest: f64) -> f64 {
-        if self.growth == 0.0 || largest <= 0.0 {
-            return self.at_half;
-        }
-        self.at_half + self.growth * (2.0 * flow / largest - 1.0)
-    }
-}
-
-/// Ground under the hitch: a unilateral spring and damper, whose damping is proportional to the depth (Hunt & Crossley
-/// 1975) or independent of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ground {
-    /// Height of the ground above the shaft, m, at which the hitch point touches it.
-    pub height_m: f64,
-    /// Stiffness, N/m.
-    pub stiffness_n_m: f64,
-    /// Depth-proportional damping, s/m: relative increase of the force per m/s of approach; dynamic plant only.
-    pub damping_s_m: f64,
-    /// Viscous damping, N s/m; dynamic plant only.
-    pub damping_n_s_m: f64,
-}
-
-impl Ground {
-    /// Force on the hitch point, N, upwards, at its height, m, and speed, m/s.
-    #[must_use]
-    pub fn force_n(&self, height_m: f64, speed_m_s: f64) -> f64 {
-        let depth_m = self.height_m - height_m;
-        if depth_m <= 0.0 {
-            return 0.0;
-        }
-        let spring_n = self.stiffness_n_m * depth_m;
-        let damped_n = spring_n * (1.0 - self.damping_s_m * speed_m_s);
-        (damped_n - self.damping_n_s_m * speed_m_s).max(0.0)
-    }
-}
-
-/// Dry friction with state: bristles between piston and seal deflect before they slip (Dahl 1968; LuGre with a
-/// speed-independent level, Canudas de Wit 1995), and relax at rest due to vibration of the machine.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bristles {
-    /// Friction force with slipping bristles, N.
-    pub force_n: f64,
-    /// Deflection of slipping bristles, m.
-    pub reach_m: f64,
-    /// Relaxation rate: speed of the piston at which the relaxation reduces the force by half, m/s.
-    pub creep_m_s: f64,
-}
-
-impl Bristles {
-    /// Deflection of the bristles, m, after the piston moved by `moved_m`: `z' = v - (|v| + creep) z / reach`, exact
-    /// for a constant speed.
-    #[must_use]
-    pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
-        let share = (moved_m.abs() + self.creep_m_s * dt_s) / self.reach_m;
-        if share <= 0.0 {
-            return before_m;
-        }
-        let end_m = moved_m / share;
-        end_m + (before_m - end_m) * (-share).exp()
-    }
-}
-
-/// A hose whose wall expands with the pressure, partly at once and partly by creep (a spring in parallel with a spring
-/// and damper, the standard linear solid; Ferry, Viscoelastic Properties of Polymers, 1980, ch. 1).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Hose {
-    /// Immediate compliance, m3/Pa.
-    pub at_once_m3_pa: f64,
-    /// Additional compliance after complete creep, m3/Pa.
-    pub creeping_m3_pa: f64,
-    /// Creep rate at constant pressure, 1/s, relative to the remaining creep.
-    pub catching_up_1_s: f64,
-}
-
-impl Hose {
-    /// Flow, m3/s, into its creeping wall, which lags behind the pressure by `behind_pa`.
-    #[inline(always)]
-    #[must_use]
-    pub fn creep_m3_s(&self, behind_pa: f64) -> f64 {
-        self.creeping_m3_pa * self.catching_up_1_s * behind_pa
-    }
-}
 
 /// A user-defined term, in the SI unit of its place, from the state of the plant.
 pub type TermFunction = Box<dyn Fn(&Signals) -> f64 + Send + Sync>;
@@ -303,48 +162,78 @@ pub struct EffectHooks {
     pub terms: Vec<(Place, TermFunction)>,
 }
 
+impl EffectHooks {
+    /// Hooks without any effect.
+    pub const NONE: Self = Self {
+        currents: Vec::new(),
+        lift_flow_factor: FlowFactor::ONE,
+        lower_flow_factor: FlowFactor::ONE,
+        lower_drop_factor: Vec::new(),
+        lower_travel_factor: Vec::new(),
+        flow_number_1_a_sqrt_pa: None,
+        margin: Vec::new(),
+        idle_extra_pa: 0.0,
+        spool_lag_extra_s: 0.0,
+        margin_lost_to_flow_pa_s_m3: 0.0,
+        compensator_lag_s: 0.0,
+        cracking_extra_pa: 0.0,
+        check_valve: Line::FREE,
+        pump_slip: Vec::new(),
+        relief: None,
+        return_line: Line::FREE,
+        leakage: Vec::new(),
+        stiffness_factor: Vec::new(),
+        hose: Hose::STIFF,
+        friction: Vec::new(),
+        bristles: None,
+        weight_factor: Vec::new(),
+        inertia_share: 0.0,
+        shaft_inertia_kg_m2: 0.0,
+        longest_step_s: f64::INFINITY,
+        largest_change_a: f64::INFINITY,
+        ground: None,
+        sensors: Vec::new(),
+        terms: Vec::new(),
+    };
+}
+
 impl Default for EffectHooks {
     fn default() -> Self {
-        Self {
-            currents: Vec::new(),
-            lift_flow_factor: FlowFactor::default(),
-            lower_flow_factor: FlowFactor::default(),
-            lower_drop_factor: Vec::new(),
-            lower_travel_factor: Vec::new(),
-            flow_number_1_a_sqrt_pa: None,
-            margin: Vec::new(),
-            idle_extra_pa: 0.0,
-            spool_lag_extra_s: 0.0,
-            margin_lost_to_flow_pa_s_m3: 0.0,
-            compensator_lag_s: 0.0,
-            cracking_extra_pa: 0.0,
-            check_valve: Line::default(),
-            pump_slip: Vec::new(),
-            relief: None,
-            return_line: Line::default(),
-            leakage: Vec::new(),
-            stiffness_factor: Vec::new(),
-            hose: Hose::default(),
-            friction: Vec::new(),
-            bristles: None,
-            weight_factor: Vec::new(),
-            inertia_share: 0.0,
-            shaft_inertia_kg_m2: 0.0,
-            longest_step_s: f64::INFINITY,
-            largest_change_a: f64::INFINITY,
-            ground: None,
-            sensors: Vec::new(),
-            terms: Vec::new(),
-        }
+        Self::NONE
     }
 }
 
+/// Sum of an empty list: negative zero, which changes no number that it is added to.
+const NONE: f64 = -0.0;
+
+/// Sum of laws. The empty sum is inlined: most plants have few effects, and this is in the innermost loop.
+#[inline(always)]
 fn sum(laws: &[Law], of: f64) -> f64 {
-    laws.iter().map(|law| law(of)).sum()
+    match laws.is_empty() {
+        true => NONE,
+        false => sum_of_some(laws, of),
+    }
 }
 
+#[cold]
+#[inline(never)]
+fn sum_of_some(laws: &[Law], of: f64) -> f64 {
+    laws.iter().fold(NONE, |sum, law| sum + law(of))
+}
+
+/// Product of laws.
+#[inline(always)]
 fn product(laws: &[Law], of: f64) -> f64 {
-    laws.iter().map(|law| law(of)).product()
+    match laws.is_empty() {
+        true => 1.0,
+        false => product_of_some(laws, of),
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn product_of_some(laws: &[Law], of: f64) -> f64 {
+    laws.iter().fold(1.0, |product, law| product * law(of))
 }
 
 impl EffectHooks {
@@ -375,13 +264,25 @@ impl EffectHooks {
     }
 
     /// Sum of the friction forces, N, in a state with a weight's force, N.
+    #[inline(always)]
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
+        match self.friction.is_empty() {
+            true => NONE,
+            false => self.some_friction_n(*state, weight_n),
+        }
+    }
+
+    /// The state is passed by value, so that without friction the solver need not keep it in memory.
+    #[cold]
+    #[inline(never)]
+    fn some_friction_n(&self, state: MechanicalState, weight_n: f64) -> f64 {
         let forces = self.friction.iter();
-        forces.map(|force| force(state, weight_n)).sum()
+        forces.fold(NONE, |sum, force| sum + force(&state, weight_n))
     }
 
     /// Force of the bristles, N, at a deflection, m.
+    #[inline(always)]
     #[must_use]
     pub fn bristles_n(&self, bent_m: f64) -> f64 {
         self.bristles
@@ -389,6 +290,7 @@ impl EffectHooks {
     }
 
     /// [`Bristles::bent_m`]; zero without bristles.
+    #[inline(always)]
     #[must_use]
     pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
         self.bristles
@@ -396,19 +298,33 @@ impl EffectHooks {
     }
 
     /// Factor on the weight's force at a piston travel, m, with the load's share in the weight.
+    #[inline(always)]
     #[must_use]
-    pub fn weight_factor(&self, piston_m: f64, load_share: f64) -> f64 {
+    pub fn weight_factor(&self, piston_m: f64, load_share: impl FnOnce() -> f64) -> f64 {
+        match self.weight_factor.is_empty() {
+            true => 1.0,
+            false => self.some_weight_factor(piston_m, load_share()),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn some_weight_factor(&self, piston_m: f64, load_share: f64) -> f64 {
         let factors = self.weight_factor.iter();
-        factors.map(|factor| factor(piston_m, load_share)).product()
+        factors.fold(1.0, |product, factor| {
+            product * factor(piston_m, load_share)
+        })
     }
 
     /// Pressure downstream of the lowering valve, Pa, at a flow through it, m3/s.
+    #[inline(always)]
     #[must_use]
     pub fn return_pressure_pa(&self, flow_m3_s: f64) -> f64 {
         self.return_line.pressure_pa(flow_m3_s)
     }
 
     /// Whether a hitch at rest with both valves closed stays at rest.
+    #[inline(always)]
     #[must_use]
     pub fn stays_at_rest(&self) -> bool {
         let straighten = |bristles: Bristles| bristles.creep_m_s > 0.0;
@@ -416,36 +332,42 @@ impl EffectHooks {
     }
 
     /// Sum of the leakage flows, m3/s, at a cylinder pressure, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn leakage_m3_s(&self, cylinder_pressure_pa: f64) -> f64 {
         sum(&self.leakage, cylinder_pressure_pa)
     }
 
     /// Factor on the lowering valve's flow at its pressure drop, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn lower_drop_factor(&self, drop_pa: f64) -> f64 {
         product(&self.lower_drop_factor, drop_pa)
     }
 
     /// Factor on the travel of the lowering spool beyond its opening point, at the valve's pressure drop, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn lower_travel_factor(&self, drop_pa: f64) -> f64 {
         product(&self.lower_travel_factor, drop_pa)
     }
 
     /// Sum of the additions to the compensator's margin, Pa, at a cylinder pressure, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn margin_pa(&self, cylinder_pressure_pa: f64) -> f64 {
         sum(&self.margin, cylinder_pressure_pa)
     }
 
     /// Pump flow lost to slip, m3/s, at a pump pressure, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn pump_slip_m3_s(&self, pump_pressure_pa: f64) -> f64 {
         sum(&self.pump_slip, pump_pressure_pa)
     }
 
     /// Factor on the oil's bulk modulus at a cylinder pressure, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn stiffness_factor(&self, cylinder_pressure_pa: f64) -> f64 {
         product(&self.stiffness_factor, cylinder_pressure_pa)

@@ -2,6 +2,7 @@
 
 use crate::components::lag::Lag;
 use crate::components::oil;
+use crate::hooks::acting::kinds;
 use crate::plant::{Plant, attached};
 use crate::state::Rig;
 
@@ -21,6 +22,7 @@ impl Plant<'_> {
     /// hysteresis, start at rest at the present currents.
     pub fn set_oil_temperature_c(&mut self, oil_temperature_c: f64) {
         self.hooks = attached(self.model, oil_temperature_c);
+        self.kinds = kinds(&self.hooks);
         let stages = self.hooks.currents.iter_mut();
         stages.fold(self.input, |currents, stage| stage.rest(currents));
         let lag_s = (self.model.spool_lag_s() + self.hooks.spool_lag_extra_s).max(0.0);

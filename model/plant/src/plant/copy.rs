@@ -17,6 +17,7 @@ impl Plant<'_> {
             rig: self.rig,
             steps: self.steps,
             hooks,
+            kinds: self.kinds,
             spools: self.spools,
             spool_currents: self.spool_currents,
             turning_a_s: self.turning_a_s,

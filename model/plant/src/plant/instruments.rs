@@ -7,6 +7,7 @@ use crate::units;
 
 impl Plant<'_> {
     /// The true quantities, in the instruments' units.
+    #[inline(always)]
     pub(crate) fn truth(&self) -> Reading {
         Reading {
             pump_pressure_bar: units::bar_from_pa(self.flows.pump_pressure_pa),

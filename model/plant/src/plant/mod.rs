@@ -7,16 +7,18 @@ mod rest;
 
 use crate::components::lag::Lag;
 use crate::constants::Dynamics;
+use crate::hooks::acting::{EVERY, kinds, with_kinds};
 use crate::hooks::effect::AddedEffect;
 use crate::hooks::effect_hooks::{Currents, EffectHooks, RunConditions};
 use crate::hooks::place::Place;
 use crate::hooks::reading::Reading;
 use crate::hooks::signals::Signals;
 use crate::model::Model;
-use crate::solver::circuit::{Circuit, Flows, Openings};
+use crate::solver::circuit::{Circuit, Flows};
 use crate::solver::dynamic::Steps;
 use crate::solver::forces::Forces;
 use crate::solver::moment::Moment;
+use crate::solver::openings::Openings;
 use crate::solver::{dynamic, steady};
 use crate::state::{HitchRig, MechanicalState, Rig};
 
@@ -29,6 +31,8 @@ pub struct Plant<'m> {
     rig: Rig,
     steps: Steps,
     hooks: EffectHooks,
+    /// Kinds of effects among the hooks.
+    kinds: u8,
     spools: [Lag; 2],
     spool_currents: Currents,
     /// Rate of change of the spools' currents over the last step, A/s.
@@ -61,6 +65,7 @@ impl<'m> Plant<'m> {
             model,
             rig,
             steps: Steps::FINE,
+            kinds: kinds(&hooks),
             hooks,
             spools,
             spool_currents: effective,
@@ -145,11 +150,13 @@ impl<'m> Plant<'m> {
     /// Updates the readings, `dt_s` after the last update.
     fn read(&mut self, dt_s: f64) {
         self.refresh_unless_balanced();
-        let mut reading = self.truth();
+        self.reading = self.truth();
         for sensor in &mut self.hooks.sensors {
-            sensor.advance(&mut reading, dt_s);
+            sensor.advance(&mut self.reading, dt_s);
         }
-        self.reading = self.with_sensor_terms(reading);
+        if !self.hooks.terms.is_empty() {
+            self.reading = self.with_sensor_terms(self.reading);
+        }
     }
 
     /// The present readings of the instruments.
@@ -171,14 +178,13 @@ impl<'m> Plant<'m> {
     }
 
     /// Rocker angle, rad; NaN on a flow bench.
+    #[inline]
     #[must_use]
     pub fn rocker_angle_rad(&self) -> f64 {
         match self.rig {
             Rig::Hitch(_) => {
-                self.model
-                    .linkage()
-                    .at(self.state.piston_m)
-                    .rocker_angle_rad
+                let posture = self.model.linkage().at(self.state.piston_m);
+                posture.rocker_angle_rad
             }
             Rig::Flow { .. } => f64::NAN,
         }
@@ -202,29 +208,18 @@ impl<'m> Plant<'m> {
         self.circuit().idle_pressure_pa()
     }
 
-    fn circuit(&self) -> Circuit<'_> {
-        Circuit {
-            constants: self.model.constants(),
-            hooks: &self.hooks,
-            moment: self.moment(),
-        }
+    /// The circuit with effects of any kind.
+    fn circuit(&self) -> Circuit<'_, EVERY> {
+        Circuit::new(self.model, &self.hooks, &self.signals)
     }
 
-    fn forces<'a>(&'a self, rig: &'a HitchRig) -> Forces<'a> {
-        Forces {
-            model: self.model,
-            hooks: &self.hooks,
-            rig,
-            moment: self.moment(),
-        }
+    /// The forces with effects of any kind.
+    fn forces<'a>(&'a self, rig: &'a HitchRig) -> Forces<'a, EVERY> {
+        Forces::new(self.model, &self.hooks, &self.signals, rig)
     }
 
-    fn moment(&self) -> Moment<'_> {
-        Moment {
-            model: self.model,
-            hooks: &self.hooks,
-            before: &self.signals,
-        }
+    fn moment(&self) -> Moment<'_, EVERY> {
+        self.circuit().moment
     }
 
     /// Starts a step of a lagging compensator in the quasi-static plant.
@@ -266,9 +261,13 @@ impl<'m> Plant<'m> {
                     speed_m_s: self.state.speed_m_s,
                     dt_s,
                 };
-                let (forces, circuit) = (self.forces(&rig), self.circuit());
-                let piston_m =
-                    steady::step(&forces, &circuit, self.state, end, self.lowest_m, dt_s);
+                let (model, hooks, signals) = (self.model, &self.hooks, &self.signals);
+                let (state, lowest_m) = (&self.state, self.lowest_m);
+                let piston_m = with_kinds!(self.kinds, KINDS => {
+                    let forces = Forces::<KINDS>::new(model, hooks, signals, &rig);
+                    let circuit = Circuit::new(model, hooks, signals);
+                    steady::step(&forces, &circuit, state, end, lowest_m, dt_s)
+                });
                 let moved_m = piston_m - self.state.piston_m;
                 self.state.bristles_m = self.hooks.bent_m(self.state.bristles_m, moved_m, dt_s);
                 self.state.piston_m = piston_m;
@@ -282,11 +281,16 @@ impl<'m> Plant<'m> {
                 let half = self.open(from, middle, 0.5 * dt_s);
                 let end = self.open(middle, currents, 0.5 * dt_s);
                 let openings = [start, half, end];
-                let (forces, circuit) = (self.forces(&rig), self.circuit());
-                if dynamic::rests(&forces, &circuit, &self.state, &openings) {
-                    return;
-                }
-                self.state = dynamic::step(&forces, &circuit, &self.state, &openings, dt_s);
+                let (model, hooks, signals) = (self.model, &self.hooks, &self.signals);
+                let state = &mut self.state;
+                with_kinds!(self.kinds, KINDS => {
+                    let forces = Forces::<KINDS>::new(model, hooks, signals, &rig);
+                    let circuit = Circuit::new(model, hooks, signals);
+                    if dynamic::rests(&forces, &circuit, state, &openings) {
+                        return;
+                    }
+                    dynamic::step(&forces, &circuit, state, &openings, dt_s);
+                });
             }
         }
         if !self.hooks.terms.is_empty() {
@@ -301,9 +305,9 @@ impl<'m> Plant<'m> {
     /// of the load does not matter, but whether a jump happened does.
     #[inline(always)]
     fn open(&mut self, from: Currents, to: Currents, dt_s: f64) -> Openings {
-        let changes = to.largest_difference_a(from) / self.hooks.largest_change_a;
-        if changes > 1.0 {
-            let pieces = changes.ceil();
+        let (change_a, largest_a) = (to.largest_difference_a(from), self.hooks.largest_change_a);
+        if change_a > largest_a {
+            let pieces = (change_a / largest_a).ceil();
             let piece_s = dt_s / pieces;
             for piece in 1..pieces as usize {
                 self.take_spools(from.towards(to, piece as f64 / pieces), piece_s);
@@ -363,8 +367,12 @@ impl<'m> Plant<'m> {
 
     /// Updates the quasi-static speed, pressure and flows at the present openings and travel.
     fn balance(&mut self, rig: &HitchRig, before: Option<steady::Before>) {
-        let (forces, circuit) = (self.forces(rig), self.circuit());
-        let balance = steady::balance(&forces, &circuit, self.openings, self.state, before);
+        let (model, hooks, signals) = (self.model, &self.hooks, &self.signals);
+        let balance = with_kinds!(self.kinds, KINDS => {
+            let forces = Forces::<KINDS>::new(model, hooks, signals, rig);
+            let circuit = Circuit::new(model, hooks, signals);
+            steady::balance(&forces, &circuit, self.openings, &self.state, before)
+        });
         self.state.speed_m_s = balance.speed_m_s;
         self.state.pressure_pa = balance.pressure_pa;
         self.flows = balance.flows;

@@ -2,82 +2,19 @@
 
 use crate::components::orifice_valve::OrificeValve;
 use crate::components::pump::PumpKind;
-use crate::components::valve_curve::ValveCurve;
 use crate::constants::Constants;
-use crate::hooks::effect_hooks::{EffectHooks, FlowFactor, Line};
+use crate::hooks::acting::Acting;
+use crate::hooks::effect_hooks::EffectHooks;
+use crate::hooks::elements::{FlowFactor, Line, ReliefOverride};
 use crate::hooks::place::Place;
+use crate::hooks::signals::Signals;
+use crate::model::Model;
 use crate::solver::moment::Moment;
+use crate::solver::openings::{Opening, Openings};
 use crate::state::MechanicalState;
 
 /// Pressure deviation below which a lagging compensator, and a hose's creeping wall, is at rest, Pa.
 pub const AT_REST_PA: f64 = 10.0;
-
-/// Opening of a valve.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Opening {
-    /// Flow at the reference drop, m3/s.
-    pub flow_m3_s: f64,
-    /// Current beyond the threshold, A; zero if nothing depends on it.
-    pub beyond_threshold_a: f64,
-}
-
-impl Opening {
-    /// Whether the valve is closed.
-    #[must_use]
-    pub fn shut(&self) -> bool {
-        self.flow_m3_s <= 0.0
-    }
-
-    /// Linear interpolation between this opening and another.
-    fn towards(self, to: Self, share: f64) -> Self {
-        let between = |from: f64, to: f64| from + (to - from) * share;
-        Self {
-            flow_m3_s: between(self.flow_m3_s, to.flow_m3_s),
-            beyond_threshold_a: between(self.beyond_threshold_a, to.beyond_threshold_a),
-        }
-    }
-
-    /// The same opening with its flow multiplied by `factor`.
-    fn scaled(self, factor: f64) -> Self {
-        Self {
-            flow_m3_s: self.flow_m3_s * factor,
-            ..self
-        }
-    }
-}
-
-/// Openings of the two valves.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Openings {
-    /// Lift valve.
-    pub lift: Opening,
-    /// Lowering valve.
-    pub lower: Opening,
-}
-
-impl Openings {
-    /// Whether both valves are closed.
-    #[must_use]
-    pub fn shut(&self) -> bool {
-        self.lift.shut() && self.lower.shut()
-    }
-
-    /// Whether the total opening of both valves is larger than that of others.
-    #[must_use]
-    pub fn wider_than(&self, others: &Self) -> bool {
-        let width = |of: &Self| of.lift.flow_m3_s + of.lower.flow_m3_s;
-        width(self) > width(others)
-    }
-
-    /// Linear interpolation between these openings and others.
-    #[must_use]
-    pub fn towards(self, to: Self, share: f64) -> Self {
-        Self {
-            lift: self.lift.towards(to.lift, share),
-            lower: self.lower.towards(to.lower, share),
-        }
-    }
-}
 
 /// Flows and pump pressure of the circuit.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -94,12 +31,14 @@ pub struct Flows {
 
 impl Flows {
     /// Flow at the flow meter in the cylinder line, m3/s, positive into the cylinder.
+    #[inline(always)]
     #[must_use]
     pub fn metered_m3_s(&self) -> f64 {
         self.lift_m3_s - self.lower_m3_s
     }
 
     /// Net flow into the cylinder, m3/s.
+    #[inline(always)]
     #[must_use]
     pub fn net_m3_s(&self) -> f64 {
         self.metered_m3_s() - self.leakage_m3_s
@@ -107,57 +46,85 @@ impl Flows {
 }
 
 /// The circuit between pump, tank and cylinder port.
-pub struct Circuit<'a> {
+pub struct Circuit<'a, const KINDS: u8> {
     /// The components.
     pub constants: &'a Constants,
     /// The attached effects.
-    pub hooks: &'a EffectHooks,
+    pub hooks: Acting<'a, KINDS>,
     /// The signals for terms.
-    pub moment: Moment<'a>,
+    pub moment: Moment<'a, KINDS>,
 }
 
 /// Largest factor of terms on a valve's flow.
 const GREATEST_FACTOR: f64 = 10.0;
 
-impl Circuit<'_> {
+impl<'a, const KINDS: u8> Circuit<'a, KINDS> {
+    /// The circuit of a model with effects of `KINDS`; `before` are the signals for terms.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(model: &'a Model, hooks: &'a EffectHooks, before: &'a Signals) -> Self {
+        let hooks = Acting::only(hooks);
+        Self {
+            constants: model.constants(),
+            hooks,
+            moment: Moment {
+                model,
+                hooks,
+                before,
+            },
+        }
+    }
+
     /// Openings of the valves at effective currents, A.
     #[inline(always)]
     #[must_use]
     pub fn openings(&self, lift_a: f64, lower_a: f64) -> Openings {
-        let flow_m3_s = |curve: &ValveCurve, current_a: f64, factor: FlowFactor| {
-            let table_m3_s = curve.flow_m3_s(current_a);
-            table_m3_s * factor.at(table_m3_s, curve.saturation_m3_s())
-        };
-        let opening = |valve: &OrificeValve, current_a: f64, factor: FlowFactor| Opening {
-            flow_m3_s: flow_m3_s(&valve.curve, current_a, factor),
-            beyond_threshold_a: match self.depends_on_travel() {
-                true => (current_a - valve.curve.threshold_a()).max(0.0),
-                false => 0.0,
-            },
-        };
         let Constants {
             lift_valve,
             lower_valve,
             ..
         } = self.constants;
         Openings {
-            lift: opening(lift_valve, lift_a, self.hooks.lift_flow_factor),
-            lower: opening(lower_valve, lower_a, self.hooks.lower_flow_factor),
+            lift: self.opening(lift_valve, lift_a, self.hooks.all().lift_flow_factor),
+            lower: self.opening(lower_valve, lower_a, self.hooks.all().lower_flow_factor),
         }
     }
 
+    /// Opening of a valve at an effective current, A.
+    #[inline(always)]
+    fn opening(&self, valve: &OrificeValve, current_a: f64, factor: FlowFactor) -> Opening {
+        let curve = &valve.curve;
+        let table_m3_s = curve.flow_m3_s(current_a);
+        Opening {
+            flow_m3_s: table_m3_s * factor.at(table_m3_s, curve.saturation_m3_s()),
+            beyond_threshold_a: match self.depends_on_travel() {
+                true => (current_a - curve.threshold_a()).max(0.0),
+                false => 0.0,
+            },
+        }
+    }
+
+    #[inline(always)]
     fn depends_on_travel(&self) -> bool {
-        self.hooks.flow_number_1_a_sqrt_pa.is_some() || !self.hooks.lower_travel_factor.is_empty()
+        self.hooks.oil().flow_number_1_a_sqrt_pa.is_some()
+            || !self.hooks.oil().lower_travel_factor.is_empty()
     }
 
     /// The lowering valve's opening with the travel of its spool reduced by flow forces at a drop, Pa.
+    #[inline(always)]
     fn travelled(&self, opening: Opening, drop_pa: f64) -> Opening {
-        if self.hooks.lower_travel_factor.is_empty() {
-            return opening;
+        match self.hooks.oil().lower_travel_factor.is_empty() {
+            true => opening,
+            false => self.travelled_less(opening, drop_pa),
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn travelled_less(&self, opening: Opening, drop_pa: f64) -> Opening {
         let curve = &self.constants.lower_valve.curve;
         let flow_m3_s = |beyond_a: f64| curve.flow_m3_s(curve.threshold_a() + beyond_a);
-        let beyond_a = opening.beyond_threshold_a * self.hooks.lower_travel_factor(drop_pa);
+        let beyond_a = opening.beyond_threshold_a * self.hooks.oil().lower_travel_factor(drop_pa);
         let free_m3_s = flow_m3_s(opening.beyond_threshold_a);
         if free_m3_s <= 0.0 {
             return opening;
@@ -169,19 +136,22 @@ impl Circuit<'_> {
     }
 
     /// Ratio of a valve's discharge coefficient to that of a wide opening: `tanh` of its flow number (McCloy & Martin).
+    #[inline(always)]
     fn discharge(&self, opening: Opening, drop_pa: f64) -> f64 {
-        let Some(flow_number) = self.hooks.flow_number_1_a_sqrt_pa else {
-            return 1.0;
-        };
-        (flow_number * opening.beyond_threshold_a * drop_pa.max(0.0).sqrt()).tanh()
+        match self.hooks.oil().flow_number_1_a_sqrt_pa {
+            Some(flow_number) => {
+                (flow_number * opening.beyond_threshold_a * drop_pa.max(0.0).sqrt()).tanh()
+            }
+            None => 1.0,
+        }
     }
 
     /// Solves the circuit for a state of piston and oil.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn solve(&self, openings: Openings, state: &MechanicalState) -> Flows {
         let (lift_m3_s, pump_pressure_pa) = self.lift(openings.lift, state);
-        let leakage_m3_s = self.hooks.leakage_m3_s(state.pressure_pa);
+        let leakage_m3_s = self.hooks.oil().leakage_m3_s(state.pressure_pa);
         Flows {
             lift_m3_s,
             lower_m3_s: self.lower_m3_s(openings.lower, state),
@@ -191,58 +161,69 @@ impl Circuit<'_> {
     }
 
     /// Pump pressure, Pa, set by the compensator while lifting against the cylinder pressure of a state.
+    #[inline(always)]
     #[must_use]
     pub fn lifting_pressure_pa(&self, state: &MechanicalState) -> f64 {
         let compensator = &self.constants.compensator;
         compensator.lifting_pressure_pa(state.pressure_pa)
-            + self.hooks.margin_pa(state.pressure_pa)
+            + self.hooks.supply().margin_pa(state.pressure_pa)
             + self.moment.term(Place::CompensatorMargin, state, |_| ())
     }
 
     /// The lift valve's opening with user-defined terms applied.
+    #[inline(always)]
     fn lift_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
-        if self.hooks.terms.is_empty() {
+        if self.hooks.own().terms.is_empty() {
             return opening;
         }
-        let term = self.moment.term(Place::LiftFlowFactor, state, |signals| {
-            signals.lift_flow_m3_s = opening.flow_m3_s;
-        });
+        let term = self
+            .moment
+            .term(Place::LiftFlowFactor, state, move |signals| {
+                signals.lift_flow_m3_s = opening.flow_m3_s;
+            });
         opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
     }
 
     /// The lowering valve's opening with user-defined terms applied.
+    #[inline(always)]
     fn lower_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
-        if self.hooks.terms.is_empty() {
+        if self.hooks.own().terms.is_empty() {
             return opening;
         }
-        let term = self.moment.term(Place::LowerFlowFactor, state, |signals| {
-            signals.lower_flow_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
-        });
+        let term = self
+            .moment
+            .term(Place::LowerFlowFactor, state, move |signals| {
+                signals.lower_flow_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
+            });
         opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
     }
 
     /// Pressure downstream of the lowering valve, Pa, at a flow through it, m3/s.
     fn return_pressure_pa(&self, flow_m3_s: f64, state: &MechanicalState) -> f64 {
-        let term = self.moment.term(Place::ReturnPressure, state, |signals| {
-            signals.lower_flow_m3_s = flow_m3_s;
-        });
-        self.hooks.return_pressure_pa(flow_m3_s) + term
+        let term = self
+            .moment
+            .term(Place::ReturnPressure, state, move |signals| {
+                signals.lower_flow_m3_s = flow_m3_s;
+            });
+        self.hooks.oil().return_pressure_pa(flow_m3_s) + term
     }
 
     /// Drop across the lift orifice out of that from pump to cylinder, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn lift_drop_pa(&self, pump_pressure_pa: f64, cylinder_pressure_pa: f64) -> f64 {
         let check_valve = &self.constants.check_valve;
-        let load_pa = cylinder_pressure_pa + self.hooks.cracking_extra_pa;
+        let load_pa = cylinder_pressure_pa + self.hooks.supply().cracking_extra_pa;
         check_valve.remaining_drop_pa(pump_pressure_pa, load_pa)
     }
 
     /// Flow through lift valve and check valve, m3/s, over the drop less the cracking pressure, Pa.
+    #[inline(always)]
     fn lift_valve_m3_s(&self, opening: Opening, drop_pa: f64) -> f64 {
         let lift_valve = &self.constants.lift_valve;
         let flow_m3_s =
             lift_valve.flow_m3_s(opening.flow_m3_s, drop_pa) * self.discharge(opening, drop_pa);
-        let check_valve = &self.hooks.check_valve;
+        let check_valve = &self.hooks.supply().check_valve;
         if check_valve.is_free() || flow_m3_s == 0.0 {
             return flow_m3_s;
         }
@@ -250,6 +231,7 @@ impl Circuit<'_> {
     }
 
     /// Lift flow, m3/s, and pump pressure, Pa.
+    #[inline(always)]
     fn lift(&self, opening: Opening, state: &MechanicalState) -> (f64, f64) {
         let constants = self.constants;
         let wanted_pa = self.compensator_pa(opening, state);
@@ -257,8 +239,8 @@ impl Circuit<'_> {
             return (0.0, wanted_pa);
         }
         let flow_at = self.lift_flow_at(opening, state);
-        let pumped_m3_s = |pump_pressure_pa: f64| {
-            constants.pump.flow_m3_s() - self.hooks.pump_slip_m3_s(pump_pressure_pa)
+        let pumped_m3_s = move |pump_pressure_pa: f64| {
+            constants.pump.flow_m3_s() - self.hooks.supply().pump_slip_m3_s(pump_pressure_pa)
         };
         let flow_m3_s = flow_at(wanted_pa);
         if flow_m3_s <= pumped_m3_s(wanted_pa) {
@@ -267,20 +249,26 @@ impl Circuit<'_> {
         // The compensator is closed and does not reach its margin: the pump's full flow determines the drop (equation
         // 5).
         let drop_pa = self.lift_drop_pa(wanted_pa, state.pressure_pa);
-        let turbulent = self.hooks.flow_number_1_a_sqrt_pa.is_none();
-        let short_pa = if self.hooks.pump_slip.is_empty() && turbulent {
+        let turbulent = self.hooks.oil().flow_number_1_a_sqrt_pa.is_none();
+        let short_pa = if self.hooks.supply().pump_slip.is_empty() && turbulent {
             let ratio = pumped_m3_s(wanted_pa) / flow_m3_s;
             drop_pa * (1.0 - ratio * ratio)
         } else {
-            let spare =
-                |short_pa: f64| pumped_m3_s(wanted_pa - short_pa) - flow_at(wanted_pa - short_pa);
+            let spare = move |short_pa: f64| {
+                pumped_m3_s(wanted_pa - short_pa) - flow_at(wanted_pa - short_pa)
+            };
             crate::solver::root::rising(spare, 0.0, drop_pa, 10.0)
         };
         (pumped_m3_s(wanted_pa - short_pa), wanted_pa - short_pa)
     }
 
     /// Lift flow, m3/s, as a function of pump pressure, Pa.
-    fn lift_flow_at(&self, opening: Opening, state: &MechanicalState) -> impl Fn(f64) -> f64 {
+    #[inline(always)]
+    fn lift_flow_at(
+        &self,
+        opening: Opening,
+        state: &MechanicalState,
+    ) -> impl Fn(f64) -> f64 + Copy {
         let opening = self.lift_opening(opening, state);
         let cylinder_pressure_pa = state.pressure_pa;
         move |pump_pressure_pa| {
@@ -290,6 +278,7 @@ impl Circuit<'_> {
     }
 
     /// Steady pump pressure, Pa, of compensator and relief valve for an opening of the lift valve.
+    #[inline(always)]
     #[must_use]
     pub fn steady_pressure_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
         if opening.shut() {
@@ -297,30 +286,33 @@ impl Circuit<'_> {
         }
         let flow_at = self.lift_flow_at(opening, state);
         let without_flow_pa = self.lifting_pressure_pa(state);
-        let drooped_pa = self.drooped_pa(without_flow_pa, state.pressure_pa, &flow_at);
-        self.relieved_pa(drooped_pa, &flow_at)
+        let drooped_pa = self.drooped_pa(without_flow_pa, state.pressure_pa, flow_at);
+        self.relieved_pa(drooped_pa, flow_at)
     }
 
     /// Whether the compensator is at its idle pressure, as it always is without a lag.
+    #[inline(always)]
     #[must_use]
     pub fn idles(&self, state: &MechanicalState) -> bool {
         (state.compensator_pa - self.idle_pressure_pa()).abs() < AT_REST_PA
     }
 
     /// Pump pressure with the lift valve closed, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn idle_pressure_pa(&self) -> f64 {
         let idle_pa = match self.constants.pump.kind {
             PumpKind::FixedDisplacement => self.constants.compensator.idle_pressure_pa(),
             PumpKind::LoadSensing => self.constants.pump.standby_pressure_pa,
         };
-        idle_pa + self.hooks.idle_extra_pa
+        idle_pa + self.hooks.supply().idle_extra_pa
     }
 
     /// Rate of the pump pressure of a lagging compensator, Pa/s; zero without a lag.
+    #[inline(always)]
     #[must_use]
     pub fn compensator_pa_s(&self, openings: Openings, state: &MechanicalState) -> f64 {
-        let lag_s = self.hooks.compensator_lag_s;
+        let lag_s = self.hooks.supply().compensator_lag_s;
         match lag_s > 0.0 {
             true => (self.steady_pressure_pa(openings.lift, state) - state.compensator_pa) / lag_s,
             false => 0.0,
@@ -337,7 +329,7 @@ impl Circuit<'_> {
         state: &MechanicalState,
         dt_s: f64,
     ) -> (f64, f64) {
-        let lag_s = self.hooks.compensator_lag_s;
+        let lag_s = self.hooks.supply().compensator_lag_s;
         if lag_s == 0.0 {
             return (state.compensator_pa, 0.0);
         }
@@ -349,9 +341,10 @@ impl Circuit<'_> {
     }
 
     /// Present pump pressure of the compensator for an opening of the lift valve, Pa.
+    #[inline(always)]
     #[must_use]
     pub fn compensator_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
-        if self.hooks.compensator_lag_s == 0.0 {
+        if self.hooks.supply().compensator_lag_s == 0.0 {
             return self.steady_pressure_pa(opening, state);
         }
         if state.catching_up == 0.0 {
@@ -363,18 +356,34 @@ impl Circuit<'_> {
 
     /// The pump pressure, Pa, that the compensator sets with the lift flow `flow_at` that pressure at a cylinder pressure;
     /// without flow it would set `wanted_pa`.
-    ///
-    /// The margin that it loses per flow acts as a laminar resistance in series with the orifice, which gives the pressure in
-    /// closed form for the square-root law, and a good guess for any other.
+    #[inline(always)]
     fn drooped_pa(
         &self,
         wanted_pa: f64,
         cylinder_pressure_pa: f64,
-        flow_at: &impl Fn(f64) -> f64,
+        flow_at: impl Fn(f64) -> f64,
     ) -> f64 {
-        let lost_pa_s_m3 = self.hooks.margin_lost_to_flow_pa_s_m3;
+        match self.hooks.supply().margin_lost_to_flow_pa_s_m3 == 0.0 {
+            true => wanted_pa,
+            false => self.drooped_with_flow_pa(wanted_pa, cylinder_pressure_pa, flow_at),
+        }
+    }
+
+    /// [`Circuit::drooped_pa`] with a margin that decreases with the flow.
+    ///
+    /// The margin that it loses per flow acts as a laminar resistance in series with the orifice, which gives the pressure in
+    /// closed form for the square-root law, and a good guess for any other.
+    #[cold]
+    #[inline(never)]
+    fn drooped_with_flow_pa(
+        &self,
+        wanted_pa: f64,
+        cylinder_pressure_pa: f64,
+        flow_at: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let lost_pa_s_m3 = self.hooks.supply().margin_lost_to_flow_pa_s_m3;
         let free_m3_s = flow_at(wanted_pa);
-        if lost_pa_s_m3 == 0.0 || free_m3_s <= 0.0 {
+        if free_m3_s <= 0.0 {
             return wanted_pa;
         }
         let resistance = Line {
@@ -394,13 +403,26 @@ impl Circuit<'_> {
 
     /// The pump pressure, Pa, limited by the relief valve, where the compensator would set `wanted_pa`; `flow_at` is
     /// the lift flow as a function of it.
-    fn relieved_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
-        let limit = self.hooks.relief.as_ref();
-        // A load-sensing pump reduces its displacement at the limit, so no flow passes a valve that has an override.
-        let limit = limit.filter(|_| self.constants.pump.kind == PumpKind::FixedDisplacement);
-        let Some(relief) = limit else {
-            return self.constants.relief_valve.limit_pa(wanted_pa);
-        };
+    #[inline(always)]
+    fn relieved_pa(&self, wanted_pa: f64, flow_at: impl Fn(f64) -> f64) -> f64 {
+        match self.hooks.supply().relief {
+            // A load-sensing pump reduces its displacement at the limit, so no flow passes a valve that has an override.
+            Some(relief) if self.constants.pump.kind == PumpKind::FixedDisplacement => {
+                self.overridden_pa(relief, wanted_pa, flow_at)
+            }
+            _ => self.constants.relief_valve.limit_pa(wanted_pa),
+        }
+    }
+
+    /// [`Circuit::relieved_pa`] of a relief valve with an override.
+    #[cold]
+    #[inline(never)]
+    fn overridden_pa(
+        &self,
+        relief: ReliefOverride,
+        wanted_pa: f64,
+        flow_at: impl Fn(f64) -> f64,
+    ) -> f64 {
         let crack_pa = self.constants.relief_valve.set_pressure_pa - relief.below_setting_pa;
         if wanted_pa <= crack_pa || relief.override_pa <= 0.0 {
             return wanted_pa.min(crack_pa);
@@ -416,34 +438,51 @@ impl Circuit<'_> {
     }
 
     /// Flow through the lowering valve, m3/s, over a drop, Pa.
+    #[inline(always)]
     fn lower_valve_m3_s(&self, opening: Opening, drop_pa: f64) -> f64 {
         let lower_valve = &self.constants.lower_valve;
         let opening = self.travelled(opening, drop_pa);
         let flow_m3_s = lower_valve.flow_m3_s(opening.flow_m3_s, drop_pa);
-        flow_m3_s * self.hooks.lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
+        flow_m3_s * self.hooks.oil().lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
     }
 
     /// Lowering flow, m3/s; the valve's drop is reduced by the return line.
+    #[inline(always)]
     fn lower_m3_s(&self, opening: Opening, state: &MechanicalState) -> f64 {
         if opening.shut() {
             return 0.0;
         }
         let opening = self.lower_opening(opening, state);
         let free_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
-        let terms = self.hooks.has_term(Place::ReturnPressure);
-        let line = &self.hooks.return_line;
+        match self.hooks.oil().return_line.is_free() && self.hooks.own().terms.is_empty() {
+            true => free_m3_s,
+            false => self.behind_return_line_m3_s(opening, free_m3_s, *state),
+        }
+    }
+
+    /// Lowering flow, m3/s, with a return line, where it is `free_m3_s` without.
+    #[cold]
+    #[inline(never)]
+    fn behind_return_line_m3_s(
+        &self,
+        opening: Opening,
+        free_m3_s: f64,
+        state: MechanicalState,
+    ) -> f64 {
+        let terms = self.hooks.own().has_term(Place::ReturnPressure);
+        let line = &self.hooks.oil().return_line;
         if (line.is_free() && !terms) || free_m3_s == 0.0 {
             return free_m3_s;
         }
         let square_root_law = self.constants.lower_valve.transition_drop_pa == 0.0
-            && self.hooks.lower_drop_factor.is_empty()
-            && self.hooks.lower_travel_factor.is_empty()
-            && self.hooks.flow_number_1_a_sqrt_pa.is_none();
+            && self.hooks.oil().lower_drop_factor.is_empty()
+            && self.hooks.oil().lower_travel_factor.is_empty()
+            && self.hooks.oil().flow_number_1_a_sqrt_pa.is_none();
         if square_root_law && !terms {
             return line.behind_orifice_m3_s(free_m3_s, state.pressure_pa);
         }
         let passed_m3_s = |flow_m3_s: f64| {
-            let drop_pa = state.pressure_pa - self.return_pressure_pa(flow_m3_s, state);
+            let drop_pa = state.pressure_pa - self.return_pressure_pa(flow_m3_s, &state);
             self.lower_valve_m3_s(opening, drop_pa)
         };
         // Root of f(Q) = Q - valve(p - p_T(Q)), which increases with Q. It lies between zero and the free flow, or

@@ -13,9 +13,11 @@
 //! under the 70 kN of a dead-headed pump, so a spring would only add stiffness to the equations.
 
 use crate::constants::Constants;
+use crate::hooks::acting::Acting;
 use crate::model::Model;
-use crate::solver::circuit::{AT_REST_PA, Circuit, Openings};
+use crate::solver::circuit::{AT_REST_PA, Circuit};
 use crate::solver::forces::Forces;
+use crate::solver::openings::Openings;
 use crate::state::MechanicalState;
 
 /// Step sizes of the integrator.
@@ -80,9 +82,9 @@ type Derivative = [f64; 5];
 
 /// [`Derivative`] of a state. This is the innermost loop; it is inlined, as passing values would wait for their stores.
 #[inline(always)]
-fn derivative(
-    forces: &Forces,
-    circuit: &Circuit,
+fn derivative<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
     openings: &Openings,
     state: &MechanicalState,
 ) -> Derivative {
@@ -95,12 +97,12 @@ fn derivative(
         pressure_pa,
         ..*state
     };
-    let hose = &circuit.hooks.hose;
+    let hose = &circuit.hooks.oil().hose;
     let flows = circuit.solve(*openings, &state);
     let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
     let masses = &circuit.constants.masses;
     let load_kg = forces.rig.load_kg;
-    let heavier = 1.0 + circuit.hooks.inertia_share;
+    let heavier = 1.0 + circuit.hooks.piston().inertia_share;
     let (shaft_kg, shaft_kg_m) = forces.shaft_inertia_kg(state.piston_m);
     let inertia_kg = masses.inertia_kg(load_kg, dh_dx) * heavier + shaft_kg;
     let slope = masses.half_inertia_slope_kg_m(load_kg, dh_dx, d2h_dx2_1_m) * heavier + shaft_kg_m;
@@ -124,25 +126,33 @@ fn derivative(
         speed_m_s,
         force_n / inertia_kg,
         rise_pa_s,
-        seen_pa_s - hose.catching_up_1_s * state.wall_behind_pa,
+        hose.behind_pa_s(seen_pa_s, state.wall_behind_pa),
         circuit.compensator_pa_s(*openings, &state),
     ]
 }
 
 /// Pressure increase per volume of oil, Pa/m3: reciprocal of `V/E(p) + C`, oil and hoses.
-fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
+#[inline(always)]
+fn stiffness_pa_m3<const KINDS: u8>(
+    circuit: &Circuit<KINDS>,
+    piston_m: f64,
+    pressure_pa: f64,
+) -> f64 {
     let constants = circuit.constants;
-    let modulus_pa = constants.oil.bulk_modulus_pa * circuit.hooks.stiffness_factor(pressure_pa);
+    let modulus_pa =
+        constants.oil.bulk_modulus_pa * circuit.hooks.oil().stiffness_factor(pressure_pa);
     let volume_m3 = constants.cylinder.volume_m3(piston_m.max(0.0));
-    modulus_pa / (volume_m3 + circuit.hooks.hose.at_once_m3_pa * modulus_pa)
+    modulus_pa / (volume_m3 + circuit.hooks.oil().hose.at_once_m3_pa * modulus_pa)
 }
 
 /// Stiffness of the oil alone, without air and hoses, Pa/m3: conversion of a void into a pressure.
+#[inline(always)]
 fn oil_stiffness_pa_m3(constants: &Constants, piston_m: f64) -> f64 {
     constants.oil.bulk_modulus_pa / constants.cylinder.volume_m3(piston_m.max(0.0))
 }
 
 /// The state with its void represented by a pressure below the vacuum.
+#[inline(always)]
 fn stretched(model: &Model, state: &MechanicalState) -> MechanicalState {
     if state.void_m3 == 0.0 {
         return *state;
@@ -156,6 +166,7 @@ fn stretched(model: &Model, state: &MechanicalState) -> MechanicalState {
 }
 
 /// The state with a pressure below the vacuum represented by a void.
+#[inline(always)]
 fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
     let missing_pa = VACUUM_PA - state.pressure_pa;
     if missing_pa <= 0.0 {
@@ -172,7 +183,11 @@ fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
 }
 
 /// The state with a piston beyond a stop put back to it, at rest; the oil is compressed or expanded accordingly.
-fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
+#[inline(always)]
+fn within_stops<const KINDS: u8>(
+    circuit: &Circuit<KINDS>,
+    state: MechanicalState,
+) -> MechanicalState {
     let cylinder = &circuit.constants.cylinder;
     let piston_m = state.piston_m.clamp(0.0, cylinder.stroke_m);
     let beyond_m = state.piston_m - piston_m;
@@ -188,13 +203,27 @@ fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
     }
 }
 
-fn moved(state: &MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState {
+/// The state after `dt_s` at a rate.
+#[inline(always)]
+fn moved<const KINDS: u8>(
+    hooks: Acting<KINDS>,
+    state: &MechanicalState,
+    rate: Derivative,
+    dt_s: f64,
+) -> MechanicalState {
+    let piston_m = state.piston_m + dt_s * rate[0];
+    let travel_m = piston_m - state.piston_m;
+    let compensator_pa = match hooks.supply().compensator_lag_s == 0.0 {
+        true => state.compensator_pa,
+        false => state.compensator_pa + dt_s * rate[4],
+    };
     MechanicalState {
-        piston_m: state.piston_m + dt_s * rate[0],
+        piston_m,
         speed_m_s: state.speed_m_s + dt_s * rate[1],
         pressure_pa: state.pressure_pa + dt_s * rate[2],
         wall_behind_pa: state.wall_behind_pa + dt_s * rate[3],
-        compensator_pa: state.compensator_pa + dt_s * rate[4],
+        bristles_m: hooks.piston().bent_m(state.bristles_m, travel_m, dt_s),
+        compensator_pa,
         ..*state
     }
 }
@@ -202,7 +231,13 @@ fn moved(state: &MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalStat
 /// Rate at which the orifices settle the pressure within a step, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each
 /// orifice whose drop depends on the cylinder pressure. The flow is proportional to the square root of the drop, so the
 /// rate increases as the drop decreases: the drop at the end of the step is used.
-fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState, dt_s: f64) -> f64 {
+#[inline(always)]
+fn settling_rate<const KINDS: u8>(
+    circuit: &Circuit<KINDS>,
+    openings: Openings,
+    state: &MechanicalState,
+    dt_s: f64,
+) -> f64 {
     let constants = circuit.constants;
     let flows = circuit.solve(openings, state);
     let stiffness = oil_stiffness_pa_m3(constants, state.piston_m);
@@ -210,8 +245,8 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
     let rise_pa = stiffness * gained_m3_s * dt_s;
     let slope = |flow_m3_s: f64, drop_pa: f64, lost_pa: f64, transition_pa: f64| {
         let least_pa = (0.5 * transition_pa).max(SMALLEST_DROP_PA);
-        let [before_pa, after_pa] =
-            [drop_pa, drop_pa - lost_pa.max(0.0)].map(|pa| pa.max(least_pa));
+        let before_pa = drop_pa.max(least_pa);
+        let after_pa = (drop_pa - lost_pa.max(0.0)).max(least_pa);
         0.5 * flow_m3_s / (before_pa * after_pa).sqrt()
     };
     let lower = slope(
@@ -222,9 +257,9 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
     );
     // A working compensator without lag keeps the lift valve's drop constant regardless of the cylinder pressure, up to
     // the relief pressure.
-    let drooped_pa = circuit.hooks.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
+    let drooped_pa = circuit.hooks.supply().margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
     let wanted_pa = circuit.lifting_pressure_pa(state);
-    let lagging = circuit.hooks.compensator_lag_s > 0.0;
+    let lagging = circuit.hooks.supply().compensator_lag_s > 0.0;
     let keeps = flows.pump_pressure_pa + drooped_pa >= wanted_pa - TOLERANCE_PA;
     let compensated = keeps && !lagging;
     let room_pa = match compensated {
@@ -249,8 +284,9 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
 }
 
 /// Settling rate of a hose's creeping wall and of the pressure with it, 1/s.
-fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
-    let hose = &circuit.hooks.hose;
+#[inline(always)]
+fn creeping_rate<const KINDS: u8>(circuit: &Circuit<KINDS>, state: &MechanicalState) -> f64 {
+    let hose = &circuit.hooks.oil().hose;
     if hose.creeping_m3_pa == 0.0 {
         return 0.0;
     }
@@ -259,8 +295,9 @@ fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
 }
 
 /// Settling rate of a lagging compensator, 1/s.
-fn lagging_rate(circuit: &Circuit) -> f64 {
-    match circuit.hooks.compensator_lag_s {
+#[inline(always)]
+fn lagging_rate<const KINDS: u8>(circuit: &Circuit<KINDS>) -> f64 {
+    match circuit.hooks.supply().compensator_lag_s {
         0.0 => 0.0,
         lag_s => 1.0 / lag_s,
     }
@@ -268,9 +305,9 @@ fn lagging_rate(circuit: &Circuit) -> f64 {
 
 /// Longest step, s, that resolves the oscillation of the load on the oil at the present piston position.
 #[must_use]
-pub fn longest_step_s(
-    forces: &Forces,
-    circuit: &Circuit,
+pub fn longest_step_s<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
     state: MechanicalState,
     steps: Steps,
 ) -> f64 {
@@ -285,25 +322,29 @@ pub fn longest_step_s(
 /// Angular frequency of the load on its oil with shut valves, rad/s: `A sqrt(K / M)` with the stiffness `K` of oil, air and
 /// hoses at the present pressure.
 #[must_use]
-pub fn load_frequency_rad_s(forces: &Forces, circuit: &Circuit, state: &MechanicalState) -> f64 {
+pub fn load_frequency_rad_s<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
+    state: &MechanicalState,
+) -> f64 {
     let dh_dx = forces.model.linkage().dh_dx(state.piston_m);
     let constants = circuit.constants;
     let of_load_kg = constants.masses.inertia_kg(forces.rig.load_kg, dh_dx);
     let (shaft_kg, _) = forces.shaft_inertia_kg(state.piston_m);
-    let inertia_kg = of_load_kg * (1.0 + circuit.hooks.inertia_share) + shaft_kg;
+    let inertia_kg = of_load_kg * (1.0 + circuit.hooks.piston().inertia_share) + shaft_kg;
     let stiffness_pa_m3 = stiffness_pa_m3(circuit, state.piston_m, state.pressure_pa);
     constants.cylinder.area_m2() * (stiffness_pa_m3 / inertia_kg).sqrt()
 }
 
 /// Whether the hitch stays at rest in a step with these openings.
 #[must_use]
-pub fn rests(
-    forces: &Forces,
-    circuit: &Circuit,
+pub fn rests<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
     state: &MechanicalState,
     openings: &[Openings; 3],
 ) -> bool {
-    circuit.hooks.stays_at_rest()
+    circuit.hooks.all().stays_at_rest()
         && openings.iter().all(Openings::shut)
         && state.void_m3 == 0.0
         && state.speed_m_s.abs() < AT_REST_M_S
@@ -312,15 +353,16 @@ pub fn rests(
         && derivative(forces, circuit, &Openings::default(), state)[1].abs() < AT_REST_M_S2
 }
 
-/// One step with the openings at its start, middle and end.
-#[must_use]
-pub fn step(
-    forces: &Forces,
-    circuit: &Circuit,
-    state: &MechanicalState,
+/// One step of a state with the openings at its start, middle and end.
+///
+/// The state is changed in place: a copy of what was just written would wait for the stores.
+pub fn step<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
+    state: &mut MechanicalState,
     openings: &[Openings; 3],
     dt_s: f64,
-) -> MechanicalState {
+) {
     // A wider opening settles faster.
     let [first, _, last] = openings;
     let widest = if first.wider_than(last) { first } else { last };
@@ -337,38 +379,35 @@ pub fn step(
     }
     let pieces = pieces.ceil().min(256.0) as usize;
     let piece_s = dt_s / pieces as f64;
-    let mut state = *state;
+    let at = |piece: f64| between(openings, piece / pieces as f64);
+    let mut start = at(0.0);
     for piece in 0..pieces {
-        let share = |part: f64| (piece as f64 + part) / pieces as f64;
-        let ends = [0.0, 0.5, 1.0].map(|part| between(openings, share(part)));
-        state = runge_kutta(forces, circuit, &state, &ends, piece_s);
+        let (middle, end) = (at(piece as f64 + 0.5), at(piece as f64 + 1.0));
+        runge_kutta(forces, circuit, state, &[start, middle, end], piece_s);
+        start = end;
     }
-    state
 }
 
 /// Openings at a share of the step, interpolated linearly between start, middle and end.
+#[inline(always)]
 fn between(openings: &[Openings; 3], share: f64) -> Openings {
+    let [start, middle, end] = openings;
     let (from, to, part) = if share <= 0.5 {
-        (openings[0], openings[1], 2.0 * share)
+        (start, middle, 2.0 * share)
     } else {
-        (openings[1], openings[2], 2.0 * share - 1.0)
+        (middle, end, 2.0 * share - 1.0)
     };
     from.towards(to, part)
 }
 
-fn runge_kutta(
-    forces: &Forces,
-    circuit: &Circuit,
-    state: &MechanicalState,
+fn runge_kutta<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
+    state: &mut MechanicalState,
     openings: &[Openings; 3],
     dt_s: f64,
-) -> MechanicalState {
-    let moved = |state: &MechanicalState, rate, dt_s| {
-        let mut moved = moved(state, rate, dt_s);
-        let travel_m = moved.piston_m - state.piston_m;
-        moved.bristles_m = circuit.hooks.bent_m(state.bristles_m, travel_m, dt_s);
-        moved
-    };
+) {
+    let hooks = circuit.hooks;
     let start = stretched(forces.model, state);
     let [first, middle, last] = openings;
     // A single call site, so that the compiler inlines the derivative.
@@ -380,12 +419,8 @@ fn runge_kutta(
     ];
     let (mut rate, mut sum) = ([0.0; 5], [0.0; 5]);
     for (share, weight, openings) in stages {
-        rate = derivative(
-            forces,
-            circuit,
-            openings,
-            &moved(&start, rate, share * dt_s),
-        );
+        let state = moved(hooks, &start, rate, share * dt_s);
+        rate = derivative(forces, circuit, openings, &state);
         for (sum, rate) in sum.iter_mut().zip(rate) {
             *sum += weight * rate;
         }
@@ -393,15 +428,12 @@ fn runge_kutta(
     let mean = sum.map(|sum| sum / 6.0);
     let end = torn(
         forces.model,
-        within_stops(circuit, moved(&start, mean, dt_s)),
+        within_stops(circuit, moved(hooks, &start, mean, dt_s)),
     );
     // Forces too large for any integrator, from a term or from invalid constants: the plant stops.
     if end.is_finite() {
-        end
+        *state = end;
     } else {
-        MechanicalState {
-            speed_m_s: 0.0,
-            ..*state
-        }
+        state.speed_m_s = 0.0;
     }
 }

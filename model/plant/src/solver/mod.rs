@@ -4,5 +4,6 @@ pub mod circuit;
 pub mod dynamic;
 pub mod forces;
 pub mod moment;
+pub mod openings;
 pub mod root;
 pub mod steady;

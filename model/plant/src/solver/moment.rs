@@ -22,7 +22,7 @@
 //! finite is skipped, so terms that depend on one of these are absent, and a fit that reaches a non-finite term sees
 //! the model without it.
 
-use crate::hooks::effect_hooks::EffectHooks;
+use crate::hooks::acting::Acting;
 use crate::hooks::place::Place;
 use crate::hooks::signals::Signals;
 use crate::model::Model;
@@ -30,16 +30,16 @@ use crate::state::MechanicalState;
 
 /// The state of the plant at the present instant.
 #[derive(Clone, Copy)]
-pub struct Moment<'a> {
+pub struct Moment<'a, const KINDS: u8> {
     /// The model.
     pub model: &'a Model,
     /// The attached effects.
-    pub hooks: &'a EffectHooks,
+    pub hooks: Acting<'a, KINDS>,
     /// The signals at the end of the previous step, with the currents of this one.
     pub before: &'a Signals,
 }
 
-impl Moment<'_> {
+impl<const KINDS: u8> Moment<'_, KINDS> {
     /// Sum of the terms at a place, in its SI unit, for a state of piston and oil; `refine` sets the signals that are
     /// known better than from the previous step.
     #[inline(always)]
@@ -51,26 +51,27 @@ impl Moment<'_> {
         refine: impl FnOnce(&mut Signals),
     ) -> f64 {
         // Nearly all plants have no terms, and this is in the innermost loop.
-        if self.hooks.terms.is_empty() {
+        if self.hooks.own().terms.is_empty() {
             return 0.0;
         }
-        self.present_term(place, state, refine)
+        self.present_term(place, *state, refine)
     }
 
+    /// The state is passed by value, so that without terms the solver need not keep it in memory.
     #[cold]
     #[inline(never)]
     fn present_term(
         &self,
         place: Place,
-        state: &MechanicalState,
+        state: MechanicalState,
         refine: impl FnOnce(&mut Signals),
     ) -> f64 {
-        if !self.hooks.has_term(place) {
+        if !self.hooks.own().has_term(place) {
             return 0.0;
         }
-        let mut signals = self.signals(state);
+        let mut signals = self.signals(&state);
         refine(&mut signals);
-        self.hooks.term(place, &signals)
+        self.hooks.own().term(place, &signals)
     }
 
     /// The signals for a state of piston and oil.
@@ -86,9 +87,13 @@ impl Moment<'_> {
             signals.travel_m = state.piston_m;
             signals.speed_m_s = state.speed_m_s;
             signals.rocker_angle_rad = posture.rocker_angle_rad;
-            let load_share = masses.load_share(signals.load_kg);
-            signals.weight_n = masses.weight_force_n(signals.load_kg, posture.dh_dx)
-                * self.hooks.weight_factor(state.piston_m, load_share);
+            let load_kg = signals.load_kg;
+            let load_share = || masses.load_share(load_kg);
+            signals.weight_n = masses.weight_force_n(load_kg, posture.dh_dx)
+                * self
+                    .hooks
+                    .piston()
+                    .weight_factor(state.piston_m, load_share);
         }
         signals
     }

@@ -25,6 +25,7 @@ pub fn rising(function: impl Fn(f64) -> f64, low: f64, high: f64, tolerance: f64
 ///
 /// `function` returns its value and an outcome. From a good `guess` three evaluations are sufficient: with such a slope
 /// the root is no further away than the function's value.
+#[inline(always)]
 #[must_use]
 pub fn steep<T>(
     function: impl Fn(f64) -> (f64, T),

@@ -8,9 +8,10 @@
 
 use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
-use crate::solver::circuit::{Circuit, Flows, Openings};
+use crate::solver::circuit::{Circuit, Flows};
 use crate::solver::dynamic::Steps;
 use crate::solver::forces::Forces;
+use crate::solver::openings::Openings;
 use crate::state::MechanicalState;
 
 /// Rate of change above which a current counts as jumping, A/s.
@@ -24,8 +25,8 @@ const FASTEST_M_S: f64 = 0.5;
 
 /// Whether the hitch stands on the ground or may reach it within a step.
 #[must_use]
-pub fn lands(forces: &Forces, piston_m: f64) -> bool {
-    forces.hooks.ground.is_some() && forces.ground_n(piston_m - STEP_M, 0.0) > 0.0
+pub fn lands<const KINDS: u8>(forces: &Forces<KINDS>, piston_m: f64) -> bool {
+    forces.hooks.piston().ground.is_some() && forces.ground_n(piston_m - STEP_M, 0.0) > 0.0
 }
 
 /// Longest step, s, with the attached effects, at a rate of change of the spools' currents, A/s; `lands` near the
@@ -61,18 +62,19 @@ pub struct Before {
 }
 
 /// Flow and force balance at the present piston position and bristle deflection.
+#[inline(always)]
 #[must_use]
-pub fn balance(
-    forces: &Forces,
-    circuit: &Circuit,
+pub fn balance<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
     openings: Openings,
-    MechanicalState {
+    &MechanicalState {
         piston_m,
         bristles_m,
         compensator_pa,
         catching_up,
         ..
-    }: MechanicalState,
+    }: &MechanicalState,
     before: Option<Before>,
 ) -> Balance {
     let area_m2 = circuit.constants.cylinder.area_m2();
@@ -101,13 +103,15 @@ pub fn balance(
         let state = MechanicalState { speed_m_s, ..last };
         forces.friction_n(&state, weight_n)
     };
-    let terms = circuit.hooks.has_term(Place::Friction);
+    let terms = circuit.hooks.own().has_term(Place::Friction);
     // Deflected bristles also act on a piston at rest, and so may a term, such as a spring.
     let free = at_force(0.0, held_n + friction_n(0.0));
     let free_m_s = free.flows.net_m3_s() / area_m2;
     let inertia_kg = inertia_kg(forces, piston_m);
     let before = before.filter(|_| inertia_kg > 0.0);
-    if before.is_none() && ((circuit.hooks.friction.is_empty() && !terms) || free_m_s == 0.0) {
+    if before.is_none()
+        && ((circuit.hooks.piston().friction.is_empty() && !terms) || free_m_s == 0.0)
+    {
         return Balance {
             speed_m_s: free_m_s,
             ..free
@@ -132,9 +136,9 @@ pub fn balance(
 }
 
 /// Inertia at the piston that effects add to the quasi-static plant, kg.
-fn inertia_kg(forces: &Forces, piston_m: f64) -> f64 {
+fn inertia_kg<const KINDS: u8>(forces: &Forces<KINDS>, piston_m: f64) -> f64 {
     let (share, (shaft_kg, _)) = (
-        forces.hooks.inertia_share,
+        forces.hooks.piston().inertia_share,
         forces.shaft_inertia_kg(piston_m),
     );
     if share == 0.0 {
@@ -149,10 +153,10 @@ fn inertia_kg(forces: &Forces, piston_m: f64) -> f64 {
 ///
 /// `lowest_m` is the travel at which the piston rests on its stop or the hitch on the ground.
 #[must_use]
-pub fn step(
-    forces: &Forces,
-    circuit: &Circuit,
-    state: MechanicalState,
+pub fn step<const KINDS: u8>(
+    forces: &Forces<KINDS>,
+    circuit: &Circuit<KINDS>,
+    state: &MechanicalState,
     end: Openings,
     lowest_m: f64,
     dt_s: f64,
@@ -168,9 +172,10 @@ pub fn step(
         piston_m: guess_m,
         bristles_m: circuit
             .hooks
+            .piston()
             .bent_m(state.bristles_m, guess_m - state.piston_m, dt_s),
-        ..state
+        ..*state
     };
-    let there = balance(forces, circuit, end, guess, Some(before));
+    let there = balance(forces, circuit, end, &guess, Some(before));
     within(state.piston_m + 0.5 * dt_s * (state.speed_m_s + there.speed_m_s))
 }
