@@ -1,6 +1,6 @@
 //! Converts CSV lines from a running plant into the controller's inputs.
 
-use hitch_controller_host::samples::{QUANTITIES, SWITCHES, inputs};
+use hitch_controller_host::samples::{FIRST_OF_FIELD, QUANTITIES, SWITCHES, inputs};
 use hitch_input::input_error::quote;
 use hitch_input::naming::{offer_names, unknown_name};
 use hitch_quantities::Inputs;
@@ -86,6 +86,12 @@ impl Columns {
                 time_s: None,
             }),
         }
+    }
+
+    /// Whether there is a column of draft or slip control.
+    pub fn has_field(&self) -> bool {
+        let field = 1 + FIRST_OF_FIELD..1 + QUANTITIES.len();
+        self.order.iter().any(|index| field.contains(index))
     }
 
     /// The inputs of one line; an empty cell is a missing sample.
@@ -184,8 +190,11 @@ fn number(column: usize, cell: &str) -> Result<Option<f64>, LineError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hitch_quantities::Switches;
-    use hitch_quantities::units::{MilliBar, MilliDegree, PerMille, RevolutionPerMinute};
+    use hitch_quantities::units::{
+        MilliBar, MilliDegree, MillimetrePerSecond, Newton, PerMille, RevolutionPerMinute,
+        SupplyShare,
+    };
+    use hitch_quantities::{Function, Switches};
 
     const HEADER: &str = "time_s,lever_deg,rocker_angle_deg,supply_v\n";
 
@@ -229,6 +238,28 @@ mod tests {
                 ..Switches::default()
             }
         );
+    }
+
+    #[test]
+    fn draft_and_slip_have_columns_too() {
+        let header = format!(
+            "time_s,lever_deg,rocker_angle_deg,{}",
+            QUANTITIES[FIRST_OF_FIELD..].join(",")
+        );
+        let mut columns = Columns::parse(&header).unwrap();
+        let inputs = columns
+            .inputs("0,90,90,56.25,56.26,1.8,,18000,50,15.5,2\n")
+            .unwrap();
+        assert_eq!(inputs.left_pin, Some(SupplyShare(56_250)));
+        assert_eq!(inputs.right_pin, Some(SupplyShare(56_260)));
+        assert_eq!(inputs.ground_speed, Some(MillimetrePerSecond(1_800)));
+        assert_eq!(inputs.wheel_speed, None);
+        assert_eq!(inputs.draft_set_point, Some(Newton(18_000)));
+        assert_eq!(inputs.mix, Some(PerMille(500)));
+        assert_eq!(inputs.slip_limit, Some(PerMille(155)));
+        assert_eq!(Function::from_code(inputs.function), Function::Mix);
+        assert!(columns.has_field());
+        assert!(!Columns::parse(HEADER).unwrap().has_field());
     }
 
     #[test]

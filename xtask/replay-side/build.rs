@@ -10,6 +10,8 @@ use std::{env, fs};
 const SIGNALS: &str = "quantities/src/signals/mod.rs";
 const CONTROLLER: &str = "controller/src/controller.rs";
 const ENVELOPE: &str = "safety/src/lib.rs";
+/// Types of outputs whose variants have codes; the others have a number in a unit.
+const CODES: [&str; 4] = ["Fault", "Trip", "Reason", "Trouble"];
 
 fn main() {
     let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../firmware");
@@ -85,7 +87,10 @@ fn outputs(fields: &[(String, String)]) -> String {
     let values = fields
         .iter()
         .map(|(name, kind)| match (optional(kind), kind.as_str()) {
-            (Some(_), _) => format!("outputs.{name}.map_or(0, |code| code as i32),"),
+            (Some(kind), _) if CODES.contains(&kind) => {
+                format!("outputs.{name}.map_or(0, |code| code as i32),")
+            }
+            (Some(_), _) => format!("outputs.{name}.map_or(word::ABSENT, |value| value.0),"),
             (None, "State" | "bool") => format!("outputs.{name} as i32,"),
             (None, _) => format!("outputs.{name}.0,"),
         });

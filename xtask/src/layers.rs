@@ -35,6 +35,7 @@ const CRATES: [Layers; 9] = [
             &["valve"],
             &["sensing"],
             &["operator"],
+            &["reference"],
             &["estimation"],
             &["adaptation"],
             &["motion"],

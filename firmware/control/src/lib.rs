@@ -5,7 +5,7 @@
 //! It may depend on `hitch-quantities` alone: it does not depend on the safety envelope or the bus.
 //!
 //! ```text
-//! Inputs -> sensors -> start-up lock, modes -> position | rate control -> desired piston speed
+//! Inputs -> sensors -> start-up lock, modes -> reference -> position | rate control -> desired piston speed
 //!        -> check-valve and compensator logic -> inverse valve map -> currents that are asked for
 //! ```
 //!
@@ -15,6 +15,7 @@
 //! * [`valve`]: valve curves and their inverse, closing of the valves, demand and phase,
 //! * [`sensing`]: validation of the sensors,
 //! * [`operator`]: lever, button, dials and switches, the start-up lock, and the mode that follows from them,
+//! * [`reference`](mod@reference): draft, mix, depth limit and slip guard: the set point that they make of the lever,
 //! * [`estimation`]: observers of motion, load and valve dynamics,
 //! * [`adaptation`]: adaptation of the valve model by the moves of this machine,
 //! * [`motion`]: position and rate law, from a set point or a button to a demanded speed,
@@ -51,6 +52,7 @@ pub mod current;
 pub mod estimation;
 pub mod motion;
 pub mod operator;
+pub mod reference;
 pub mod sensing;
 pub mod sequencing;
 pub mod valve;

@@ -178,6 +178,8 @@ impl<F: NorFlash> Ecu<F> {
         inputs.step_time = self.tick_timer.begin(contacts.clock_us);
         inputs.clock_ratio = contacts.clock_ratio;
         inputs.engine_speed = self.node.engine_speed(self.tick_timer.now_ms());
+        inputs.ground_speed = self.node.take_ground_speed();
+        inputs.wheel_speed = self.node.take_wheel_speed();
         inputs.enable_line_fault = self.enable_line.read(contacts.enable_feedback);
         // Some microcontrollers stop while their flash is erased: no motion is allowed then, nor without safety values,
         // nor on a board whose start has found something that forbids it.
@@ -315,7 +317,7 @@ impl<F: NorFlash> Ecu<F> {
         let status = status(
             &self.inputs,
             &self.outputs,
-            &self.controller.calibration().position,
+            self.controller.calibration(),
             self.service
                 .troubles()
                 .union(self.start_check.troubles)

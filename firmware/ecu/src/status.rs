@@ -1,8 +1,8 @@
 //! Status of a step for the bus.
 
-use hitch_protocols::j1939::{ExitCode, HitchStatus, Limit, Troubles};
+use hitch_protocols::j1939::{Draft, ExitCode, HitchStatus, Limit, Troubles};
 use hitch_quantities::calibration::design_parameters::PositionParameters;
-use hitch_quantities::{Fault, Inputs, Outputs, State};
+use hitch_quantities::{Calibration, Fault, Inputs, Outputs, State};
 
 use crate::arbiter;
 
@@ -17,12 +17,13 @@ const AT_LIMIT_MDEG: i32 = 100;
 pub fn status(
     inputs: &Inputs,
     outputs: &Outputs,
-    limits: &PositionParameters,
+    calibration: &Calibration,
     troubles: Troubles,
     taken_back: bool,
     consents: bool,
 ) -> HitchStatus {
     let exit = exit_code(outputs);
+    let limits = &calibration.position;
     HitchStatus {
         position: inputs
             .rocker_angle
@@ -35,6 +36,11 @@ pub fn status(
             && inputs.jog.is_none()
             && !taken_back,
         consents,
+        draft: match (calibration.draft.fitted.0, outputs.draft) {
+            (0, _) => Draft::NotFitted,
+            (_, None) => Draft::Lost,
+            (_, Some(draft)) => Draft::Measured(draft),
+        },
         troubles,
     }
 }

@@ -41,5 +41,6 @@ pub mod units;
 pub use calibration::{Calibration, CalibrationError, ValidCalibration};
 pub use signals::coils::{CoilCurrents, Duties};
 pub use signals::fault::Fault;
+pub use signals::field::{Function, Reason, Trouble};
 pub use signals::trip::Trip;
 pub use signals::{Inputs, Outputs, State, Switches};

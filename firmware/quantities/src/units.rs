@@ -171,6 +171,30 @@ quantity!(
     /// A gain from distance to speed, in 1/s.
     PerSecond, "per_s", 1
 );
+quantity!(
+    /// Output of a ratiometric sensor over its supply, in thousandths of a percent.
+    SupplyShare, "percent", 1000
+);
+quantity!(
+    /// Force, in newtons; a draft is positive when the implement is pulled.
+    Newton, "n", 1
+);
+quantity!(
+    /// Change of a force with the angle of the rocker arm, in newtons a degree.
+    NewtonPerDegree, "n_per_deg", 1
+);
+quantity!(
+    /// Frequency, in millihertz.
+    MilliHertz, "hz", 1000
+);
+quantity!(
+    /// Length along the ground, in millimetres.
+    Millimetre, "m", 1000
+);
+quantity!(
+    /// Speed over the ground or of the wheels, in millimetres a second.
+    MillimetrePerSecond, "m_per_s", 1000
+);
 
 impl PerMille {
     /// The whole.

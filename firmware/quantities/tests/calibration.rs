@@ -169,3 +169,17 @@ fn every_scalar_outside_its_range_is_refused_by_name() {
     check_ranges(|c| &mut c.current);
     check_ranges(|c| &mut c.safety);
 }
+
+#[test]
+fn words_are_sealed_as_their_block_is() {
+    let mut block = Calibration::nominal();
+    block.draft.length.0 += 1;
+    let mut words = block.to_words();
+    // Neither version nor checksum of the words count.
+    words[0] = 1;
+    let sealed = Calibration::seal_words(&words).unwrap();
+    assert_eq!(*sealed, block.clone().sealed());
+    assert!((*sealed).clone().validate().is_ok());
+    block.draft.length.0 = -1;
+    assert!(Calibration::seal_words(&block.to_words()).is_err());
+}

@@ -21,6 +21,13 @@ impl ControllerProcess {
     }
 
     fn open_with(header: &str, options: &[&str]) -> Self {
+        let (controller, answer) = Self::answered(header, options);
+        assert_eq!(answer, "lift_current_a,lower_current_a,state");
+        controller
+    }
+
+    /// The process, and its answer to the header.
+    fn answered(header: &str, options: &[&str]) -> (Self, String) {
         let mut command = hitch();
         let command = command
             .arg("controller")
@@ -37,8 +44,8 @@ impl ControllerProcess {
             output,
         };
         controller.send(header);
-        assert_eq!(controller.answer(), "lift_current_a,lower_current_a,state");
-        controller
+        let answer = controller.answer();
+        (controller, answer)
     }
 
     fn send(&mut self, line: &str) {
@@ -240,6 +247,52 @@ fn a_missing_angle_is_a_fault_and_not_an_error() {
         Some("0.000,0.000,fault:angle")
     );
     assert_eq!(controller.close().0, Some(0));
+}
+
+#[test]
+fn draft_reason_and_lost_sensor_are_answered_where_the_columns_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fitted.toml");
+    let fitted = host_tests::field_rig::pass::fitted_with(|calibration| {
+        calibration.slip.highest_limit.0 = 0;
+    });
+    std::fs::write(&path, calibration_file::write(&fitted)).unwrap();
+    let header = [
+        HEADER,
+        "left_draft_pin_percent,right_draft_pin_percent,draft_set_point_n,function_code",
+    ]
+    .join(",");
+    let (mut controller, answer) =
+        ControllerProcess::answered(&header, &["--calibration", path.to_str().unwrap()]);
+    assert_eq!(
+        answer,
+        "lift_current_a,lower_current_a,state,target_deg,draft_n,set_point_reason,lost_sensor"
+    );
+    let mut step = 0;
+    let mut last = |lever_deg: f64, pins: [f64; 2], steps: u32| {
+        let mut cells = Vec::new();
+        for _ in 0..steps {
+            // The last digit of a healthy pin changes.
+            let [left, right] = pins.map(|pin| pin + f64::from(step % 3) * 1e-3);
+            let time_s = f64::from(step) * 1e-3;
+            controller.send(&format!(
+                "{time_s:.3},{lever_deg},90,{left},{right},20000,1"
+            ));
+            cells = controller.answer().split(',').map(str::to_owned).collect();
+            step += 1;
+        }
+        cells[3..].join(",")
+    };
+    last(80.0, [56.25; 2], 50);
+    last(90.2, [56.25; 2], 50);
+    // In the soil, with the lever through the angle, and near enough that nothing has to move: twice 6.25 % of 25 % at 40 kN.
+    let answer = last(90.0, [56.25; 2], 1_000);
+    let cells: Vec<&str> = answer.split(',').collect();
+    let draft_n: f64 = cells[1].parse().unwrap();
+    assert!((draft_n - 20_000.0).abs() < 50.0, "{answer}");
+    assert_eq!(cells[2..], ["draft", ""], "{answer}");
+    let answer = last(90.0, [0.0, 56.25], 60);
+    assert!(answer.ends_with(",,holds,pin-range"), "{answer}");
 }
 
 #[test]

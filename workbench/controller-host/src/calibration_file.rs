@@ -58,6 +58,8 @@ macro_rules! with_groups {
         $visit(&mut $calibration.teach $(, $argument)*)?;
         $visit(&mut $calibration.current $(, $argument)*)?;
         $visit(&mut $calibration.bus $(, $argument)*)?;
+        $visit(&mut $calibration.draft $(, $argument)*)?;
+        $visit(&mut $calibration.slip $(, $argument)*)?;
         $visit(&mut $calibration.safety $(, $argument)*)?;
     };
 }

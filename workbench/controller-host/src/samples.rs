@@ -1,13 +1,13 @@
 //! Samples in engineering units, as the controller's inputs.
 
 use hitch_quantities::units::{
-    MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, PerMille,
-    RevolutionPerMinute,
+    Count, MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt,
+    MillimetrePerSecond, Newton, PerMille, RevolutionPerMinute, SupplyShare,
 };
 use hitch_quantities::{Inputs, Switches};
 
-/// Names of the sampled quantities, each ending in its unit.
-pub const QUANTITIES: [&str; 12] = [
+/// Names of the sampled quantities, each ending in its unit. From [`FIRST_OF_FIELD`] on they are those of draft and slip control.
+pub const QUANTITIES: [&str; 20] = [
     "lever_deg",
     "rocker_angle_deg",
     "cylinder_pressure_bar",
@@ -20,7 +20,18 @@ pub const QUANTITIES: [&str; 12] = [
     "engine_speed_rpm",
     "measured_lift_current_a",
     "measured_lower_current_a",
+    "left_draft_pin_percent",
+    "right_draft_pin_percent",
+    "ground_speed_m_per_s",
+    "wheel_speed_m_per_s",
+    "draft_set_point_n",
+    "mix_percent",
+    "slip_limit_percent",
+    "function_code",
 ];
+
+/// Index of the first quantity of draft and slip control.
+pub const FIRST_OF_FIELD: usize = 12;
 
 /// Names of the operator's switches.
 pub const SWITCHES: [&str; 7] = [
@@ -72,6 +83,14 @@ pub fn inputs(
         reference: None,
         set_point: None,
         clock_ratio: None,
+        left_pin: milli(12).map(SupplyShare),
+        right_pin: milli(13).map(SupplyShare),
+        ground_speed: milli(14).map(MillimetrePerSecond),
+        wheel_speed: milli(15).map(MillimetrePerSecond),
+        draft_set_point: scaled(16, 1.0).map(Newton),
+        mix: scaled(17, 10.0).map(PerMille),
+        slip_limit: scaled(18, 10.0).map(PerMille),
+        function: scaled(19, 1.0).map(Count),
         enable_line_fault: false,
         switches: Switches {
             transport_lock,

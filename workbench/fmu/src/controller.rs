@@ -48,6 +48,14 @@ const ABOUT: [Quantity; QUANTITIES.len()] = [
     ("1/min", 0.0, "engine speed"),
     ("A", 0.0, "measured current of the lift coil"),
     ("A", 0.0, "measured current of the lowering coil"),
+    ("%", 50.0, "output of the left draft pin over its supply"),
+    ("%", 50.0, "output of the right draft pin over its supply"),
+    ("m/s", 0.0, "speed over the ground; sampled in the steps in which a message is received"),
+    ("m/s", 0.0, "speed of the driven wheels; sampled in the steps in which a message is received"),
+    ("N", 0.0, "set point of the draft"),
+    ("%", 50.0, "mix dial; 0 is position, 100 is draft"),
+    ("%", 30.0, "slip limit"),
+    ("", 0.0, "code of the function: 0 position, 1 draft, 2 mix, 3 depth limit"),
 ];
 
 const SWITCHES_ABOUT: [&str; SWITCHES.len()] = [

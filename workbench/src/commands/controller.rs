@@ -7,7 +7,7 @@ use hitch_controller::Controller;
 use hitch_controller_host::calibration_file;
 use hitch_controller_host::teaching::{self, Teaching};
 use hitch_input::input_error::{InputError, Position};
-use hitch_quantities::Outputs;
+use hitch_quantities::{Outputs, Reason, Trouble};
 
 use super::loop_::calibration;
 use crate::error::Error;
@@ -16,6 +16,8 @@ use crate::{output, outputs};
 
 /// Header of the output.
 const HEADER: &str = "lift_current_a,lower_current_a,state";
+/// What it has besides, if the input has a column of draft or slip control.
+const FIELD_HEADER: &str = ",target_deg,draft_n,set_point_reason,lost_sensor";
 
 /// Arguments of `hitch controller`.
 #[derive(Debug, clap::Args)]
@@ -27,6 +29,10 @@ const HEADER: &str = "lift_current_a,lower_current_a,state";
     measured_lower_current_a, and the switches transport_lock, hold, quick_lift, teach, consent, up_released, down_released (0 is off). An empty cell \
     is a missing sample. Each line is answered by one line with currents and state. The coils stay off until the lever has \
     been moved through the present angle.\n\n\
+    Optional columns of draft and slip control, for a calibration with draft.fitted = 1: left_draft_pin_percent and \
+    right_draft_pin_percent of the supply, ground_speed_m_per_s and wheel_speed_m_per_s (empty where no message was received), \
+    draft_set_point_n, mix_percent, slip_limit_percent, and function_code (0 position, 1 draft, 2 mix, 3 depth limit). With one of \
+    them the answer has target_deg, draft_n, set_point_reason and lost_sensor besides.\n\n\
     Teaching is optional. Before the lever capture and away from the ends of travel, set teach to 1 and jog_deg_per_s to any \
     value but 0 (button held, after 20 ms in which it was released): within a minute the controller identifies the opening currents, the valve delays and the ends \
     of travel. The state is teaching, then taught, or not-taught with the reason. The result takes effect when teach \
@@ -85,7 +91,11 @@ pub fn serve(
         ));
     }
     let mut columns = Columns::parse(&line).map_err(|error| fault(1, error))?;
-    answer(&mut output, HEADER)?;
+    let has_field = columns.has_field();
+    match has_field {
+        true => answer(&mut output, &[HEADER, FIELD_HEADER].concat())?,
+        false => answer(&mut output, HEADER)?,
+    }
     let mut number = 2;
     while next_line(&mut input, &mut line, number)? {
         if !line.trim().is_empty() {
@@ -97,7 +107,11 @@ pub fn serve(
             if let (Some(path), Some(found)) = (taught, found) {
                 output::write_file(path, calibration_file::write(&found).as_bytes())?;
             }
-            answer(&mut output, &reply(&outputs, &controller))?;
+            let mut reply = reply(&outputs, &controller);
+            if has_field {
+                reply += &field_reply(&outputs);
+            }
+            answer(&mut output, &reply)?;
         }
         number += 1;
     }
@@ -111,6 +125,18 @@ fn reply(outputs: &Outputs, controller: &Controller) -> String {
         "{:.3},{:.3},{state}",
         ampere(outputs.lift_current.0),
         ampere(outputs.lower_current.0)
+    )
+}
+
+/// The cells of [`FIELD_HEADER`]; empty without a draft, a reason or a lost sensor.
+fn field_reply(outputs: &Outputs) -> String {
+    let draft = outputs.draft.map(|draft| draft.0.to_string());
+    format!(
+        ",{:.3},{},{},{}",
+        f64::from(outputs.target.0) * 1e-3,
+        draft.unwrap_or_default(),
+        outputs.reference.map_or("", Reason::name),
+        outputs.trouble.map_or("", Trouble::name)
     )
 }
 

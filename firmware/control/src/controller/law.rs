@@ -6,7 +6,8 @@
 
 use hitch_quantities::piston::{flow, piston_speed};
 use hitch_quantities::units::{
-    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, MilliDegreePerSecond,
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, MilliDegree,
+    MilliDegreePerSecond,
 };
 use hitch_quantities::{CoilCurrents, Fault, Inputs};
 
@@ -14,6 +15,7 @@ use super::Control;
 use crate::motion::position::MoveReason;
 use crate::operator::mode::Mode;
 use crate::operator::{lowering_limit, upper_limit};
+use crate::reference::{ReferenceControl, Situation};
 use crate::sensing::sensors::Sensed;
 use crate::valve::phase::{Demand, Direction, Phase};
 
@@ -81,9 +83,11 @@ impl Control {
         let lever = self.lever.follow(sensed.set_point, noise_band + noise_band);
         let lever = self.quick_lift.set_point(lever, &calibration.operator);
         let highest = upper_limit(inputs.upper_limit, &calibration.position);
+        let aim = self.field_reference(lever, highest, sensed, inputs);
+        let calibration = &self.calibration;
         let changed = self
             .position
-            .follow(lever, highest, moving, &calibration.position);
+            .follow(aim, highest, moving, &calibration.position);
         if changed && !moving {
             self.drift.reset();
             self.stall.reset();
@@ -102,6 +106,38 @@ impl Control {
             return None;
         }
         Some(target)
+    }
+
+    /// The set point that draft and slip make of the lever; the lever on a machine without draft pins, and while an
+    /// implement or quick lift is in command.
+    fn field_reference(
+        &mut self,
+        lever: MilliDegree,
+        highest: MilliDegree,
+        sensed: &Sensed,
+        inputs: &Inputs,
+    ) -> MilliDegree {
+        if !ReferenceControl::is_fitted(&self.calibration) {
+            return lever;
+        }
+        if inputs.set_point.is_some() || self.quick_lift.is_raised() {
+            self.reference.end();
+            return lever;
+        }
+        let (operator, position) = (&self.calibration.operator, &self.calibration.position);
+        let lowering = lowering_limit(inputs.lowering_dial, operator, position);
+        let valve_speeds = [
+            self.saturation_speed(Direction::Lift)
+                .min(position.lift_speed),
+            self.saturation_speed(Direction::Lower).min(lowering),
+        ];
+        let situation = Situation {
+            lever,
+            angle: sensed.angle,
+            highest,
+            valve_speeds,
+        };
+        self.reference.step(inputs, &situation, &self.calibration)
     }
 
     /// True if a hitch that holds has no reason to move, or if that has yet to be known.

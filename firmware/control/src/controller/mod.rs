@@ -25,6 +25,7 @@ use crate::operator::button::ButtonGuard;
 use crate::operator::lever::SteadyLever;
 use crate::operator::mode::Mode;
 use crate::operator::{EngineWatch, Float, QuickLift};
+use crate::reference::ReferenceControl;
 use crate::sensing::sensors::{Sensed, Sensors};
 use crate::sequencing::drift_monitor::DriftMonitor;
 use crate::sequencing::stall_detector::StallDetector;
@@ -61,6 +62,7 @@ pub struct Control {
     quick_lift: QuickLift,
     float: Float,
     lever: SteadyLever,
+    reference: ReferenceControl,
     position: PositionControl,
     rate: RateControl,
     motion: MotionObserver,
@@ -109,6 +111,7 @@ impl Control {
             quick_lift: QuickLift::default(),
             float: Float::default(),
             lever: SteadyLever::default(),
+            reference: ReferenceControl::default(),
             position: PositionControl::default(),
             rate: RateControl::default(),
             motion: MotionObserver::default(),
@@ -168,6 +171,10 @@ impl Control {
     /// One step of 1 ms. `held_back`: the envelope has limited the request of the last step.
     pub fn step(&mut self, inputs: &Inputs, held_back: bool) -> ControlRequest {
         self.recovered = false;
+        if ReferenceControl::is_fitted(&self.calibration) {
+            let moves = self.phase.is_moving();
+            self.reference.sense(inputs, moves, &self.calibration);
+        }
         let sensed = self.sensors.judge(inputs, &self.calibration.sensors);
         let currents = match sensed.and_then(|sensed| self.run(&sensed, inputs, held_back)) {
             Ok(currents) => currents,

@@ -60,6 +60,7 @@ impl Control {
             .press(inputs.switches.quick_lift, follows_lever);
         if !follows_lever {
             self.float.end();
+            self.reference.end();
         }
     }
 }

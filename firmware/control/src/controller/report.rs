@@ -46,6 +46,9 @@ impl Control {
             demanded_flow: self.demanded_flow,
             speed: self.motion.speed(),
             drop: self.load.drop(),
+            reference: self.reference.reason(),
+            trouble: self.reference.trouble(),
+            draft: self.reference.draft(),
             ..Outputs::default()
         }
     }

@@ -66,6 +66,12 @@ impl QuickLift {
         self.raised &= follows_lever;
     }
 
+    /// Whether the set point is the raised one.
+    #[must_use]
+    pub const fn is_raised(&self) -> bool {
+        self.raised
+    }
+
     /// The set point: the lever's, or the raised one.
     #[must_use]
     pub fn set_point(&self, lever: MilliDegree, parameters: &OperatorParameters) -> MilliDegree {

@@ -4,6 +4,7 @@ mod bench;
 mod bus_watch;
 mod button;
 mod engine;
+mod field;
 mod history;
 mod key;
 mod remote;

@@ -5,14 +5,13 @@
 
 use hitch_quantities::units::MicrometrePerSecond;
 
+use super::machine_speed;
 use super::time::since_ms;
 
 /// The speed is sent every 100 ms; a fast one counts for so long, ms.
 const HELD_MS: u32 = 300;
-/// Largest raw value that is a speed.
-const LARGEST: u16 = 64_255;
-/// Resolution of a message, um/s.
-const UM_PER_S_PER_BIT: i32 = 1_000;
+/// Micrometres in a millimetre.
+const UM_PER_MM: i32 = 1_000;
 
 /// Monitors the ground speed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,10 +23,8 @@ pub struct GroundSpeed {
 impl GroundSpeed {
     /// A message of either group was received.
     pub fn receive(&mut self, bytes: &[u8; 8], limit: MicrometrePerSecond, now_ms: u32) {
-        let [low, high, ..] = *bytes;
-        let raw = u16::from_le_bytes([low, high]);
-        let speed = MicrometrePerSecond(i32::from(raw) * UM_PER_S_PER_BIT);
-        if raw <= LARGEST && speed > limit {
+        let speed = machine_speed::speed(bytes);
+        if speed.is_some_and(|speed| MicrometrePerSecond(speed.0 * UM_PER_MM) > limit) {
             self.exceeded_ms = Some(now_ms);
         }
     }

@@ -3,7 +3,7 @@
 //! A one-byte quantity is data up to 250; 251 to 253 are reserved, 254 says that the sender's signal is
 //! bad, 255 that there is none. Unused bits are ones.
 
-use hitch_quantities::units::PerMille;
+use hitch_quantities::units::{Newton, PerMille};
 
 use super::trouble::Troubles;
 
@@ -15,6 +15,14 @@ const ERROR: u8 = 254;
 const NOT_AVAILABLE: u8 = 255;
 /// Positions have 0.4 % a bit.
 const PER_MILLE_PER_BIT: i32 = 4;
+/// Resolution of the draft.
+const NEWTON_PER_BIT: i32 = 10;
+/// Draft of the raw value 0.
+const LEAST_DRAFT: Newton = Newton(-320_000);
+/// Largest raw value of the draft that is data.
+const LARGEST_DRAFT: i32 = 0xFAFF;
+/// Raw value of the draft: the signal is bad.
+const DRAFT_ERROR: u16 = 0xFE00;
 
 /// What the controller tells the bus about the hitch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,8 +40,22 @@ pub struct HitchStatus {
     pub remote_permitted: bool,
     /// The operator consents to remote control in this step.
     pub consents: bool,
+    /// The draft.
+    pub draft: Draft,
     /// What is wrong.
     pub troubles: Troubles,
+}
+
+/// What is known of the draft: the force of the implement against the direction of travel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Draft {
+    /// No draft pins.
+    #[default]
+    NotFitted,
+    /// The pins are lost.
+    Lost,
+    /// The draft.
+    Measured(Newton),
 }
 
 /// What limits the set point, as the controller sees it.
@@ -158,7 +180,7 @@ pub struct StatusMessage {
 }
 
 impl StatusMessage {
-    /// The status of a hitch without force sensors.
+    /// The status of a hitch whose nominal lower link force is not known.
     #[must_use]
     pub fn new(status: &HitchStatus, limit: LimitStatus, exit: ExitCode) -> Self {
         Self {
@@ -166,7 +188,7 @@ impl StatusMessage {
             in_work: status.in_work,
             limit,
             lower_link_force: NOT_AVAILABLE,
-            draft: u16::MAX,
+            draft: raw_draft(status.draft),
             exit,
         }
     }
@@ -212,11 +234,13 @@ impl StatusMessage {
 }
 
 /// What there is of the facilities of a tractor (ISO 11783-7, tractor facilities response): the position of the rear
-/// hitch, and, if `is_commanded`, its commands and their limit status. A bit that is 0 promises nothing.
+/// hitch, its draft if `has_draft`, and, if `is_commanded`, its commands and their limit status. A bit that is 0 promises
+/// nothing.
 #[must_use]
-pub const fn facilities(is_commanded: bool) -> [u8; 8] {
+pub const fn facilities(is_commanded: bool, has_draft: bool) -> [u8; 8] {
     let commands = if is_commanded { 0b1000_1000 } else { 0 };
-    [0, 0b1000_0000, 0, commands, 0, 0, 0, 0]
+    let draft = if has_draft { 0b0000_0100 } else { 0 };
+    [0, 0b1000_0000, draft, commands, 0, 0, 0, 0]
 }
 
 /// What an implement asks of the rear hitch (SPN 1875).
@@ -260,6 +284,19 @@ pub fn raw_position(position: Option<PerMille>) -> u8 {
         let rounded = (position.0.clamp(0, 1000) + PER_MILLE_PER_BIT / 2) / PER_MILLE_PER_BIT;
         u8::try_from(rounded).unwrap_or(LARGEST)
     })
+}
+
+/// The raw value of a draft, rounded to nearest; what is beyond the ends is at the end.
+fn raw_draft(draft: Draft) -> u16 {
+    match draft {
+        Draft::NotFitted => u16::MAX,
+        Draft::Lost => DRAFT_ERROR,
+        Draft::Measured(draft) => {
+            let above = (draft - LEAST_DRAFT).0.max(0);
+            let rounded = above.saturating_add(NEWTON_PER_BIT / 2) / NEWTON_PER_BIT;
+            u16::try_from(rounded.min(LARGEST_DRAFT)).unwrap_or(DRAFT_ERROR)
+        }
+    }
 }
 
 /// The position of a raw value.

@@ -15,6 +15,7 @@ mod ground_speed;
 pub mod heartbeat;
 pub mod hitch;
 mod id;
+mod machine_speed;
 pub mod measured;
 mod name;
 mod node;
@@ -26,7 +27,7 @@ pub mod transport;
 pub mod trouble;
 
 pub use diagnostics::Variant;
-pub use hitch::{ExitCode, HitchCommand, HitchStatus, Limit, LimitStatus};
+pub use hitch::{Draft, ExitCode, HitchCommand, HitchStatus, Limit, LimitStatus};
 pub use id::{GLOBAL, Id, NULL, Pgn};
 pub use measured::MeasuredBroadcast;
 pub use name::{Name, NameFields};

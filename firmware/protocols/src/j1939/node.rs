@@ -1,7 +1,7 @@
 //! The hitch as a node on the bus: what it hears, and what it says when.
 
 use hitch_quantities::calibration::design_parameters::RemoteParameters;
-use hitch_quantities::units::RevolutionPerMinute;
+use hitch_quantities::units::{MillimetrePerSecond, RevolutionPerMinute};
 
 use super::address_book::AddressBook;
 use super::claim::AddressClaim;
@@ -10,8 +10,9 @@ use super::engine::EngineSpeed;
 use super::ground_speed::GroundSpeed;
 use super::heartbeat;
 use super::heartbeat::{Heartbeat, Monitor};
-use super::hitch::{HitchCommand, HitchStatus, StatusMessage, facilities};
+use super::hitch::{Draft, HitchCommand, HitchStatus, StatusMessage, facilities};
 use super::id::{GLOBAL, Id, NULL, Pgn};
+use super::machine_speed::MachineSpeed;
 use super::name::Name;
 use super::reception::Reception;
 use super::remote::{Remote, RemoteControl, Surroundings};
@@ -59,6 +60,8 @@ pub struct Node {
     claim: AddressClaim,
     addresses: AddressBook,
     ground_speed: GroundSpeed,
+    speed_by_ground: MachineSpeed,
+    speed_by_wheels: MachineSpeed,
     remote: RemoteControl,
     remote_permitted: bool,
     diagnostics: Diagnostics,
@@ -89,6 +92,8 @@ impl Node {
             claim: AddressClaim::new(settings.name, settings.preferred_address),
             addresses: AddressBook::default(),
             ground_speed: GroundSpeed::default(),
+            speed_by_ground: MachineSpeed::default(),
+            speed_by_wheels: MachineSpeed::default(),
             remote: RemoteControl::default(),
             remote_permitted: false,
             diagnostics: Diagnostics::new(settings.variant, &settings.occurrences),
@@ -141,6 +146,16 @@ impl Node {
         self.engine.accept_from(sources);
     }
 
+    /// Speed over the ground, if it was received since the last call.
+    pub const fn take_ground_speed(&mut self) -> Option<MillimetrePerSecond> {
+        self.speed_by_ground.take()
+    }
+
+    /// Speed of the driven wheels, if it was received since the last call.
+    pub const fn take_wheel_speed(&mut self) -> Option<MillimetrePerSecond> {
+        self.speed_by_wheels.take()
+    }
+
     /// How often each trouble has occurred.
     #[must_use]
     pub const fn occurrences(&self) -> &Occurrences {
@@ -186,6 +201,10 @@ impl Node {
             Pgn::WHEEL_SPEED | Pgn::GROUND_SPEED => {
                 let limit = self.remote.parameters().ground_speed;
                 self.ground_speed.receive(bytes, limit, now_ms);
+                match id.pgn {
+                    Pgn::GROUND_SPEED => self.speed_by_ground.receive(bytes, id.source, now_ms),
+                    _ => self.speed_by_wheels.receive(bytes, id.source, now_ms),
+                }
             }
             Pgn::ENGINE => self.engine.receive(bytes, id.source, now_ms),
             Pgn::TRANSPORT_CONNECTION if for_us || for_all => {
@@ -261,6 +280,8 @@ impl Node {
     pub fn poll(&mut self, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
         self.remote_permitted = status.remote_permitted;
         self.engine.update(now_ms);
+        self.speed_by_ground.update(now_ms);
+        self.speed_by_wheels.update(now_ms);
         let owner = self.remote.owner();
         let around = Surroundings {
             condemned: owner.is_some_and(|owner| self.is_condemned(owner, now_ms)),
@@ -370,7 +391,7 @@ impl Node {
                 return Some(broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
             }
             Pgn::TRACTOR_FACILITIES => {
-                let bytes = facilities(self.remote.is_offered());
+                let bytes = facilities(self.remote.is_offered(), status.draft != Draft::NotFitted);
                 return Some(broadcast(request.group, DIAGNOSTIC_PRIORITY, source).frame(bytes));
             }
             Pgn::DM1 => self.diagnostics.dm1(),
@@ -424,10 +445,13 @@ fn identification(software: &[u8]) -> Message {
     message.take(LONGEST_MESSAGE).collect()
 }
 
-/// True if a status says something new. A position that trembles between two values doesn't.
+/// True if a status says something new. A position that trembles between two values doesn't, nor does the draft, which always
+/// changes.
 fn differs(status: &[u8; 8], last: &[u8; 8]) -> bool {
-    let ([position, rest @ ..], [last_position, last_rest @ ..]) = (status, last);
-    rest != last_rest || position.abs_diff(*last_position) > 1
+    let [position, flags, force, _, _, rest @ ..] = status;
+    let [last_position, last_flags, last_force, _, _, last_rest @ ..] = last;
+    (flags, force, rest) != (last_flags, last_force, last_rest)
+        || position.abs_diff(*last_position) > 1
 }
 
 /// An acknowledgement; requests to everybody aren't acknowledged.

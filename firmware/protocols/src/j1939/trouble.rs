@@ -10,6 +10,7 @@
 //! (12) has to be bad if a wire is.
 
 use hitch_quantities::calibration::design_parameters::{LockParameters, OperatorParameters};
+use hitch_quantities::signals::field;
 use hitch_quantities::units::{MilliAmp, MilliVolt};
 use hitch_quantities::{Fault, Inputs, Outputs, Trip};
 
@@ -30,6 +31,12 @@ const ENGINE_SPEED: u32 = 190;
 const SUPPLY: u32 = 168;
 /// Rear hitch position.
 const POSITION: u32 = 1873;
+/// Rear draft.
+const DRAFT: u32 = 1879;
+/// Ground-based machine speed.
+const GROUND_SPEED: u32 = 1859;
+/// Wheel-based machine speed.
+const WHEEL_SPEED: u32 = 1862;
 /// First manufacturer-specific number.
 const OWN: u32 = 520_192;
 const LEVER: u32 = OWN;
@@ -49,6 +56,8 @@ const BUTTONS: u32 = OWN + 13;
 const SAFETY_VALUES: u32 = OWN + 14;
 const CRYSTAL: u32 = OWN + 18;
 const IMAGE: u32 = OWN + 19;
+/// Both speeds of slip control.
+const SPEEDS: u32 = OWN + 20;
 /// J1939 network 1, the primary vehicle network.
 const NETWORK: u32 = 639;
 /// Sensor supply voltage 1.
@@ -167,6 +176,18 @@ troubles! {
     BusOff = NETWORK / 31,
     /// Received frames were lost as a queue was full; active for 5 s after the last one.
     FramesLost = NETWORK / 9,
+    /// A draft pin: missing, out of range.
+    DraftPinMissing = DRAFT / 31,
+    /// The draft pins disagree.
+    DraftPins = DRAFT / 2,
+    /// A draft pin stands still while the implement works.
+    DraftPinFrozen = DRAFT / 9,
+    /// The ground speed that the slip guard needs is not received.
+    GroundSpeedLost = GROUND_SPEED / 9,
+    /// The wheel speed that the slip guard needs is not received.
+    WheelSpeedLost = WHEEL_SPEED / 9,
+    /// One of the speeds of the slip guard stands still while the other one changes.
+    SpeedFrozen = SPEEDS / 2,
 }
 
 /// A set of troubles.
@@ -245,6 +266,7 @@ pub struct TroubleFinder {
     last_asked: Option<Coil>,
     tripped: Option<(Trip, Trouble)>,
     engine_speed: EngineSpeedMonitor,
+    speeds: SpeedMonitor,
     buttons: ButtonMonitor,
 }
 
@@ -261,7 +283,22 @@ impl TroubleFinder {
         let engine = lost.then_some(Troubles::from(Trouble::EngineSpeedLost));
         self.of_controller(inputs, outputs)
             .union(engine.unwrap_or_default())
+            .union(self.of_field(outputs.trouble))
             .union(self.buttons.update(inputs, operator))
+    }
+
+    /// Lost sensors of draft and slip control.
+    fn of_field(&mut self, trouble: Option<field::Trouble>) -> Troubles {
+        let is_lost = self.speeds.is_lost(trouble);
+        let found = trouble.and_then(|trouble| match trouble {
+            field::Trouble::PinRange => Some(Trouble::DraftPinMissing),
+            field::Trouble::PinsDisagree => Some(Trouble::DraftPins),
+            field::Trouble::PinFrozen => Some(Trouble::DraftPinFrozen),
+            field::Trouble::GroundSpeed => is_lost.then_some(Trouble::GroundSpeedLost),
+            field::Trouble::WheelSpeed => is_lost.then_some(Trouble::WheelSpeedLost),
+            field::Trouble::SpeedFrozen => Some(Trouble::SpeedFrozen),
+        });
+        found.map_or(Troubles::NONE, Troubles::from)
     }
 
     fn of_controller(&mut self, inputs: &Inputs, outputs: &Outputs) -> Troubles {
@@ -313,8 +350,8 @@ impl TroubleFinder {
     }
 }
 
-/// How long the engine speed has to be missing, ms: a start or a change of the engine's sender is no fault.
-const ENGINE_SPEED_LOST_MS: u16 = 1_000;
+/// How long a speed has to be missing, ms: a start or a change of its sender is no fault.
+const SPEED_LOST_MS: u16 = 1_000;
 
 /// Monitors whether an engine speed that the engine lock relies on is received.
 #[derive(Clone, Copy, Debug, Default)]
@@ -331,10 +368,31 @@ impl EngineSpeedMonitor {
         self.known |= is_present;
         let is_missing = !is_present && (self.known || lock.engine_required.0 != 0);
         self.missing_ms = match is_missing {
-            true => self.missing_ms.saturating_add(1).min(ENGINE_SPEED_LOST_MS),
+            true => self.missing_ms.saturating_add(1).min(SPEED_LOST_MS),
             false => 0,
         };
-        self.missing_ms >= ENGINE_SPEED_LOST_MS
+        self.missing_ms >= SPEED_LOST_MS
+    }
+}
+
+/// Monitors whether the speeds of the slip guard are received.
+#[derive(Clone, Copy, Debug, Default)]
+struct SpeedMonitor {
+    missing_ms: u16,
+}
+
+impl SpeedMonitor {
+    /// One millisecond.
+    fn is_lost(&mut self, trouble: Option<field::Trouble>) -> bool {
+        let is_missing = matches!(
+            trouble,
+            Some(field::Trouble::GroundSpeed | field::Trouble::WheelSpeed)
+        );
+        self.missing_ms = match is_missing {
+            true => self.missing_ms.saturating_add(1).min(SPEED_LOST_MS),
+            false => 0,
+        };
+        self.missing_ms >= SPEED_LOST_MS
     }
 }
 

@@ -141,7 +141,7 @@ impl CalibrationPages {
         if self.applied != Applied::Pending {
             return None;
         }
-        let checked = Calibration::from_words(self.page(self.controller_page)).seal();
+        let checked = Calibration::seal_words(self.page(self.controller_page));
         self.applied = match checked {
             Ok(_) => Applied::InUse,
             Err(_) => Applied::Inconsistent,
@@ -160,7 +160,7 @@ impl CalibrationPages {
     /// # Errors
     /// If it is inconsistent.
     pub fn to_store(&self) -> Result<ValidCalibration, CalibrationError> {
-        Calibration::from_words(&self.working).seal()
+        Calibration::seal_words(&self.working)
     }
 
     /// `stored` is in flash now and becomes the reference page.

@@ -2,6 +2,7 @@
 
 use hitch_protocols::j1939::{Pgn, Trouble, TroubleFinder, Troubles, Variant};
 use hitch_quantities::calibration::design_parameters::{LockParameters, OperatorParameters};
+use hitch_quantities::signals::field;
 use hitch_quantities::units::{Count, MilliAmp, MilliVolt, RevolutionPerMinute};
 use hitch_quantities::{Fault, Inputs, Outputs, Trip};
 
@@ -221,6 +222,66 @@ fn a_lost_engine_speed_has_its_code_until_it_is_received_again() {
     after(&mut finder, None, &required, 1_000);
     let both = finder.update(&Inputs::default(), &open, &required, &OPERATOR);
     assert_eq!(both, lost.union(Trouble::Coils.into()));
+}
+
+#[test]
+fn lost_sensors_of_draft_and_slip_have_their_codes() {
+    let after = |finder: &mut TroubleFinder, trouble, ms| {
+        let outputs = Outputs {
+            trouble,
+            ..Outputs::default()
+        };
+        let mut found = Troubles::NONE;
+        for _ in 0..ms {
+            found = finder.update(&Inputs::default(), &outputs, &LOCK, &OPERATOR);
+        }
+        found
+    };
+    // A speed may be missing for a second: its sender starts, or changes.
+    for (lost, trouble, spn, fmi, ms) in [
+        (
+            field::Trouble::PinRange,
+            Trouble::DraftPinMissing,
+            1879,
+            31,
+            1,
+        ),
+        (field::Trouble::PinsDisagree, Trouble::DraftPins, 1879, 2, 1),
+        (
+            field::Trouble::PinFrozen,
+            Trouble::DraftPinFrozen,
+            1879,
+            9,
+            1,
+        ),
+        (
+            field::Trouble::GroundSpeed,
+            Trouble::GroundSpeedLost,
+            1859,
+            9,
+            1_000,
+        ),
+        (
+            field::Trouble::WheelSpeed,
+            Trouble::WheelSpeedLost,
+            1862,
+            9,
+            1_000,
+        ),
+        (
+            field::Trouble::SpeedFrozen,
+            Trouble::SpeedFrozen,
+            520_212,
+            2,
+            1,
+        ),
+    ] {
+        let mut finder = TroubleFinder::default();
+        assert_eq!(after(&mut finder, Some(lost), ms - 1), Troubles::NONE);
+        assert_eq!(after(&mut finder, Some(lost), 1), trouble.into());
+        assert_eq!(after(&mut finder, None, 1), Troubles::NONE);
+        assert_eq!((trouble.code().spn, trouble.code().fmi), (spn, fmi));
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod diagnostics;
 mod engine;
 mod flood;
 mod heartbeat;
+mod machine_speed;
 mod measured;
 mod messages;
 mod reception;

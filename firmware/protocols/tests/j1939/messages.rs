@@ -3,9 +3,11 @@
 use hitch_protocols::can::{ExtendedId, Frame};
 use hitch_protocols::j1939::hitch::{StatusMessage, position, raw_position};
 use hitch_protocols::j1939::{
-    ExitCode, HitchCommand, HitchStatus, Id, LimitStatus, Name, NameFields, Pgn,
+    Draft, ExitCode, HitchCommand, HitchStatus, Id, LimitStatus, Name, NameFields, Pgn, Variant,
 };
-use hitch_quantities::units::PerMille;
+use hitch_quantities::units::{Newton, PerMille};
+
+use crate::bus::Bus;
 
 #[test]
 fn identifiers_are_those_of_the_standard() {
@@ -100,6 +102,37 @@ fn a_hitch_without_force_sensors_says_so() {
         [0xFE, 0xF7],
         "error; not available"
     );
+}
+
+#[test]
+fn a_draft_has_ten_newton_a_bit_and_a_lost_one_is_an_error() {
+    for (draft, raw) in [
+        (Draft::NotFitted, 0xFFFF),
+        (Draft::Lost, 0xFE00),
+        (Draft::Measured(Newton(2_550)), 32_255),
+        (Draft::Measured(Newton(-2_554)), 31_745),
+        (Draft::Measured(Newton(-2_556)), 31_744),
+        (Draft::Measured(Newton(i32::MIN)), 0),
+        (Draft::Measured(Newton(i32::MAX)), 0xFAFF),
+    ] {
+        let status = HitchStatus {
+            draft,
+            ..HitchStatus::default()
+        };
+        let message = StatusMessage::new(&status, LimitStatus::NotLimited, ExitCode::Clear);
+        assert_eq!(message.draft, raw, "{draft:?}");
+    }
+}
+
+#[test]
+fn a_draft_that_changes_all_the_time_is_sent_ten_times_a_second() {
+    let mut bus = Bus::claimed(Variant::J1939);
+    for step in 0..1_000 {
+        bus.status.draft = Draft::Measured(Newton(15_000 + 37 * (step % 50)));
+        bus.step();
+    }
+    let sent = bus.take(Pgn::REAR_HITCH_STATUS);
+    assert_eq!(sent.len(), 10);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
+use super::field_parameters::{DraftParameters, SlipParameters};
 use super::linkage::LINKAGE_POINTS;
 use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
 use super::valve_table::{VALVE_POINTS, ValveTable};
@@ -53,7 +54,7 @@ const fn full_name(group: &str, name: &str) -> u32 {
 }
 
 /// The groups in the order of the block.
-pub const GROUPS: [Group; 14] = [
+pub const GROUPS: [Group; 16] = [
     group::<HydraulicParameters>(),
     group::<SensorParameters>(),
     group::<LockParameters>(),
@@ -67,6 +68,8 @@ pub const GROUPS: [Group; 14] = [
     group::<CurrentParameters>(),
     group::<BusParameters>(),
     group::<RemoteParameters>(),
+    group::<DraftParameters>(),
+    group::<SlipParameters>(),
     group::<SafetyParameters>(),
 ];
 
@@ -125,12 +128,15 @@ fn scalar_range(index: usize) -> Option<WordRange> {
     SCALARS.get(index).map(Scalar::range)
 }
 
-/// The first scalar of a block that is outside its range, with the name of its group.
-pub(super) fn scalar_out_of_range(calibration: &Calibration) -> Option<(&'static str, OutOfRange)> {
+/// The first scalar of a block that is outside its range, with the name of its group. The block is not changed; a copy of it would
+/// take its place on the stack.
+pub(super) fn scalar_out_of_range(
+    calibration: &mut Calibration,
+) -> Option<(&'static str, OutOfRange)> {
     let mut tables_left = SCALARS_WORD;
     let mut scalars = (0..SCALAR_COUNT).zip(&SCALARS);
     let mut outside = None;
-    calibration.clone().for_each_word(&mut |word| {
+    calibration.for_each_word(&mut |word| {
         if tables_left > 0 {
             tables_left -= 1;
         } else if let Some((index, scalar)) = scalars.next()
@@ -392,6 +398,8 @@ impl Calibration {
             .or_else(|| of(&self.current, at))
             .or_else(|| of(&self.bus, at))
             .or_else(|| of(&self.remote, at))
+            .or_else(|| of(&self.draft, at))
+            .or_else(|| of(&self.slip, at))
             .or_else(|| of(&self.safety, at))
     }
 

@@ -173,6 +173,15 @@ pub const CLASSES: &[Classified] = &[
     row("remote", DOWN, &[
         "highest", "speed", "ground_speed",
     ]),
+    row("draft", Class::Machine, &[
+        "fitted", "left_zero", "right_zero", "left_span", "right_span", "output_min", "output_max", "difference",
+        "difference_share", "check_time", "healthy_time", "still_time", "frozen_time", "work_filter", "raised_filter", "soil_draft", "force_per_degree",
+        "crossover", "length", "assumed_speed", "dead_band", "step", "margin",
+    ]),
+    row("slip", Class::Machine, &[
+        "highest_limit", "lowest_speed", "time_out", "frozen_time", "filter", "slip_per_degree", "crossover",
+        "most_raise", "radius_time", "radius_range",
+    ]),
     row("safety", UP, &[
         "arming_movement", "shortest_step", "supply_min", "following_share", "following_speed",
         "sensor_supply_min",

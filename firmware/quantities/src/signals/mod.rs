@@ -3,13 +3,16 @@
 pub mod charge;
 pub mod coils;
 pub mod fault;
+pub mod field;
 pub mod trip;
 
 use super::units::{
-    Duty, MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, MilliBar,
-    MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, PerMille, RevolutionPerMinute,
+    Count, Duty, MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp,
+    MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, MillimetrePerSecond,
+    Newton, PerMille, RevolutionPerMinute, SupplyShare,
 };
 use fault::Fault;
+use field::{Reason, Trouble};
 use trip::Trip;
 
 /// What the operator has switched on.
@@ -105,6 +108,22 @@ pub struct Inputs {
     pub set_point: Option<MilliDegree>,
     /// Main clock by an independent oscillator, per mille of its rate at the start.
     pub clock_ratio: Option<PerMille>,
+    /// Left draft pin.
+    pub left_pin: Option<SupplyShare>,
+    /// Right draft pin.
+    pub right_pin: Option<SupplyShare>,
+    /// Speed over the ground; only in the step in which it was received.
+    pub ground_speed: Option<MillimetrePerSecond>,
+    /// Speed of the driven wheels; only in the step in which it was received.
+    pub wheel_speed: Option<MillimetrePerSecond>,
+    /// Set point of the draft.
+    pub draft_set_point: Option<Newton>,
+    /// Mix dial: 0 is position, 1000 is draft.
+    pub mix: Option<PerMille>,
+    /// Slip limit of the operator.
+    pub slip_limit: Option<PerMille>,
+    /// Code of the selected function ([`field::Function`]).
+    pub function: Option<Count>,
     /// What the operator has switched on.
     pub switches: Switches,
     /// The enable line of the coils' drivers: its read-back differs from its command.
@@ -206,6 +225,12 @@ pub struct Outputs {
     pub lift_duty: Duty,
     /// Share of the supply for the lowering coil.
     pub lower_duty: Duty,
+    /// What determines the set point; `None`: the lever, an implement or quick lift alone.
+    pub reference: Option<Reason>,
+    /// Lost sensor of draft or slip control.
+    pub trouble: Option<Trouble>,
+    /// Draft without its noise, positive against the direction of travel; `None`: no pins, or they are lost.
+    pub draft: Option<Newton>,
 }
 
 /// Size of the image of [`Inputs`].
@@ -258,7 +283,8 @@ impl Inputs {
     }
 
     /// A word of validity bits (bit 0: lever, and on in the order of the fields) and switches (bit 24:
-    /// transport lock, and on; bit 30: a fault of the enable line), then the values.
+    /// transport lock, and on; bit 30: a fault of the enable line), then the values. The inputs of draft and slip control
+    /// are not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
         let mut writer = Writer::new([0; INPUT_BYTES]);
@@ -305,12 +331,14 @@ impl Inputs {
             clock_ratio: field().map(PerMille),
             switches: Switches::from_bits(first),
             enable_line_fault: first & ENABLE_LINE_FAULT != 0,
+            ..Self::default()
         }
     }
 }
 
 impl Outputs {
-    /// State, fault (0: none), trip (0: none) and a byte of zero, then the values in the order of the fields.
+    /// State, fault (0: none), trip (0: none) and reference with trouble (low and high half of a byte, 0: none), then the
+    /// values in the order of the fields. The draft is not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; OUTPUT_BYTES] {
         let mut writer = Writer::new([0; OUTPUT_BYTES]);
@@ -318,7 +346,7 @@ impl Outputs {
             self.state as u8,
             self.fault.map_or(0, |fault| fault as u8),
             self.trip.map_or(0, |trip| trip as u8),
-            0,
+            field::to_byte(self.reference, self.trouble),
         ]);
         let values = [
             self.lift_current.0,

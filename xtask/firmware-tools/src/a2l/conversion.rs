@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use hitch_protocols::xcp::measurements::MeasurementInfo;
 use hitch_protocols::xcp::pages::Applied;
-use hitch_quantities::{Fault, State, Trip};
+use hitch_quantities::{Fault, Reason, State, Trip, Trouble};
 
 /// Display of raw values.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,6 +59,12 @@ pub fn of_measurement(conversions: &mut Vec<Conversion>, info: &MeasurementInfo)
             .collect(),
         "fault" => none_and(Fault::ALL.map(|fault| (fault as u8, fault.name().to_owned()))),
         "trip" => none_and(Trip::ALL.map(|trip| (trip as u8, format!("{trip:?}")))),
+        "set_point_reason" => {
+            none_and(Reason::ALL.map(|reason| (reason as u8, reason.name().to_owned())))
+        }
+        "field_trouble" => {
+            none_and(Trouble::ALL.map(|trouble| (trouble as u8, trouble.name().to_owned())))
+        }
         "calibration_state" => [Applied::InUse, Applied::Pending, Applied::Inconsistent]
             .map(|applied| (applied as u8, format!("{applied:?}")))
             .to_vec(),
@@ -97,6 +103,11 @@ fn unit(suffix: &str) -> &'static str {
         "mm_per_s" => "mm/s",
         "mm_per_s2" => "mm/s^2",
         "mm2" => "mm^2",
+        "m" => "m",
+        "m_per_s" => "m/s",
+        "n" => "N",
+        "n_per_deg" => "N/deg",
+        "hz" => "Hz",
         "ul_per_s" => "ul/s",
         "a" => "A",
         "a_per_s" => "A/s",

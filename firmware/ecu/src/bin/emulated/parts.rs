@@ -1,5 +1,5 @@
-//! What the parts of a step take: the valve maps, the proportional and integral part of a coil's current, and all of
-//! the currents' regulation.
+//! What the parts of a step take: the valve maps, the proportional and integral part of a coil's current, all of
+//! the currents' regulation, and the reference layer of draft and slip control.
 //!
 //! A part is called by address, and so is a function that does nothing; the difference is the part's own.
 
@@ -7,8 +7,12 @@ use core::hint::black_box;
 
 use hitch_control::current::Regulation;
 use hitch_control::current::pi::{Gains, ProportionalIntegral, VoltageRange};
+use hitch_control::reference::{ReferenceControl, Situation};
 use hitch_control::valve::valve_map::{ValveCurves, ValveMap};
-use hitch_quantities::units::{MicroLitrePerSecond, MilliAmp, MilliBar, MilliVolt};
+use hitch_quantities::units::{
+    Count, MicroLitrePerSecond, MicrometrePerSecond, MilliAmp, MilliBar, MilliDegree, MilliVolt,
+    MillimetrePerSecond, Newton, PerMille, SupplyShare,
+};
 use hitch_quantities::{Calibration, CoilCurrents, Inputs, ValidCalibration};
 
 use crate::Failure;
@@ -26,6 +30,7 @@ pub fn run(stopwatch: &Stopwatch) -> Result<(), Failure> {
     time_maps(stopwatch, &calibration);
     time_pi(stopwatch, &calibration);
     time_regulation(stopwatch, &calibration);
+    time_reference(stopwatch);
     Ok(())
 }
 
@@ -170,6 +175,53 @@ fn time_regulation(stopwatch: &Stopwatch, calibration: &ValidCalibration) {
     }
     report("regulation_of_one_coil=", most[0]);
     report("regulation_of_both_coils=", most[1]);
+}
+
+/// The most ticks of sensors and set point of the reference layer, over functions, drafts and slips that reach the soil,
+/// the limits and the guard. The layer of a machine without pins takes none.
+#[inline(never)]
+fn time_reference(stopwatch: &Stopwatch) {
+    type Step = fn(&mut ReferenceControl, &Inputs, &Situation, &Calibration) -> i32;
+    let layer: Step = |layer, inputs, situation, calibration| {
+        layer.sense(inputs, false, calibration);
+        layer.step(inputs, situation, calibration).0
+    };
+    let nothing: Step = |_, _, _, _| 0;
+    let mut calibration = Calibration::nominal();
+    calibration.draft.fitted = Count(1);
+    calibration.slip.highest_limit = PerMille(300);
+    let mut on = ReferenceControl::default();
+    let mut most = 0;
+    for step in 0..20_000 {
+        // Without a common divisor these meet in every way.
+        let function = step / 500 % 4;
+        let draft = step / 1_300 % 5 * 600;
+        let is_received = step % 100 == 0;
+        let speed = |speed| is_received.then_some(MillimetrePerSecond(speed + step / 100 % 3));
+        let inputs = Inputs {
+            left_pin: Some(SupplyShare(50_000 + 5 * draft + step % 7)),
+            right_pin: Some(SupplyShare(50_000 + 5 * draft + step % 5)),
+            ground_speed: speed(1_500),
+            wheel_speed: speed(1_500 + step / 1_700 % 4 * 250),
+            draft_set_point: Some(Newton(18_000)),
+            function: Some(Count(function)),
+            ..Inputs::default()
+        };
+        let situation = Situation {
+            lever: MilliDegree(62_000),
+            angle: MilliDegree(62_000 + step % 11 * 1_000),
+            highest: MilliDegree(75_000),
+            valve_speeds: [MicrometrePerSecond(150_000); 2],
+        };
+        let ticks = [layer, nothing].map(|part| {
+            let part = black_box(part);
+            stopwatch
+                .ticks_of(|| part(&mut on, &inputs, &situation, &calibration))
+                .1
+        });
+        most = ticks[0].saturating_sub(ticks[1]).max(most);
+    }
+    report("reference_layer=", most);
 }
 
 fn report(name: &str, ticks: u32) {

@@ -90,5 +90,11 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::ImageForDebugging => "image for debugging",
         Trouble::BusOff => "the ECU has left the bus after too many errors",
         Trouble::FramesLost => "the ECU has lost received frames",
+        Trouble::DraftPinMissing => "a draft pin missing or out of range",
+        Trouble::DraftPins => "the draft pins disagree",
+        Trouble::DraftPinFrozen => "a draft pin frozen",
+        Trouble::GroundSpeedLost => "ground speed not received",
+        Trouble::WheelSpeedLost => "wheel speed not received",
+        Trouble::SpeedFrozen => "ground speed or wheel speed frozen",
     }
 }

@@ -1,0 +1,253 @@
+//! From the outputs of two draft pins to the draft, with the plausibility of the pins.
+//!
+//! A sample that may be wrong is not used: the draft is [`Draft::Suspect`] until the pins are plausible again or have been
+//! implausible for `check_time`. The pins are lost then, until they have been plausible for `healthy_time`.
+
+use hitch_quantities::calibration::field_parameters::DraftParameters;
+use hitch_quantities::fixed::{Divisor, mul_div};
+use hitch_quantities::units::{MilliHertz, Millisecond, Newton, SupplyShare};
+use hitch_quantities::{Inputs, Trouble};
+
+use super::low_pass::LowPass;
+
+/// A quarter of the supply: the swing of a pin at its span.
+const QUARTER: Divisor = Divisor::at_least_one(25_000);
+
+/// The draft of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Draft {
+    /// Filtered draft.
+    Measured(Newton),
+    /// The pins are implausible, but not for long enough to be lost.
+    Suspect,
+    /// The pins are lost.
+    Lost(Trouble),
+}
+
+/// Draft pins from step to step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DraftSignal {
+    filter: LowPass,
+    left: Still,
+    right: Still,
+    implausible_for: Millisecond,
+    healthy_for: Millisecond,
+    lost: Option<Trouble>,
+    in_soil: bool,
+}
+
+impl DraftSignal {
+    /// One step; `moves`: the hitch moves.
+    pub fn step(&mut self, inputs: &Inputs, moves: bool, parameters: &DraftParameters) -> Draft {
+        let still = [
+            self.left.step(inputs.left_pin),
+            self.right.step(inputs.right_pin),
+        ];
+        let still = still.into_iter().max().unwrap_or_default();
+        match forces(inputs, parameters) {
+            Ok(draft) if !self.in_soil || still < parameters.still_time => {
+                self.plausible(draft, moves, parameters)
+            }
+            Ok(_) => self.implausible(Trouble::PinFrozen, still >= parameters.frozen_time),
+            Err(trouble) => {
+                self.implausible_for = self.implausible_for.next().min(parameters.check_time);
+                self.implausible(trouble, self.implausible_for >= parameters.check_time)
+            }
+        }
+    }
+
+    /// Whether the implement is in the soil.
+    #[must_use]
+    pub const fn is_in_soil(&self) -> bool {
+        self.in_soil
+    }
+
+    fn plausible(&mut self, draft: Newton, moves: bool, parameters: &DraftParameters) -> Draft {
+        self.implausible_for = Millisecond::ZERO;
+        if let Some(trouble) = self.lost {
+            self.healthy_for = self.healthy_for.next();
+            if self.healthy_for < parameters.healthy_time {
+                return Draft::Lost(trouble);
+            }
+            self.lost = None;
+            self.filter.reset();
+        }
+        let filtered = Newton(self.filter.step(draft.0, self.corner(moves, parameters)));
+        self.in_soil = match self.in_soil {
+            false => filtered > parameters.soil_draft,
+            true => filtered + filtered > parameters.soil_draft,
+        };
+        Draft::Measured(filtered)
+    }
+
+    fn implausible(&mut self, trouble: Trouble, for_long: bool) -> Draft {
+        self.healthy_for = Millisecond::ZERO;
+        if for_long && self.lost.is_none() {
+            self.lost = Some(trouble);
+        }
+        self.lost.map_or(Draft::Suspect, Draft::Lost)
+    }
+
+    const fn corner(&self, moves: bool, parameters: &DraftParameters) -> MilliHertz {
+        match moves && !self.in_soil {
+            true => parameters.raised_filter,
+            false => parameters.work_filter,
+        }
+    }
+}
+
+/// The sum of the pins' forces.
+fn forces(inputs: &Inputs, parameters: &DraftParameters) -> Result<Newton, Trouble> {
+    let range = parameters.output_min..=parameters.output_max;
+    let pin = |sample: Option<SupplyShare>, zero: SupplyShare, span: Newton| {
+        let output = sample.filter(|output| range.contains(output))?;
+        Some(Newton(mul_div((output - zero).0, span.0, QUARTER)))
+    };
+    let left = pin(inputs.left_pin, parameters.left_zero, parameters.left_span);
+    let right = pin(
+        inputs.right_pin,
+        parameters.right_zero,
+        parameters.right_span,
+    );
+    let (Some(left), Some(right)) = (left, right) else {
+        return Err(Trouble::PinRange);
+    };
+    let draft = left + right;
+    let share = parameters.difference_share.0;
+    let allowed = parameters.difference + draft.magnitude().scaled(share, Divisor::THOUSAND);
+    match (left - right).magnitude() > allowed {
+        true => Err(Trouble::PinsDisagree),
+        false => Ok(draft),
+    }
+}
+
+/// For how long a sample has been the same.
+#[derive(Clone, Copy, Debug, Default)]
+struct Still {
+    last: Option<SupplyShare>,
+    since: Millisecond,
+}
+
+impl Still {
+    fn step(&mut self, sample: Option<SupplyShare>) -> Millisecond {
+        self.since = match sample == self.last {
+            true => self.since.next(),
+            false => Millisecond::ZERO,
+        };
+        self.last = sample;
+        self.since
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PARAMETERS: DraftParameters = DraftParameters::NOMINAL;
+
+    struct Pins {
+        signal: DraftSignal,
+        step: i32,
+    }
+
+    impl Pins {
+        fn new() -> Self {
+            Self {
+                signal: DraftSignal::default(),
+                step: 0,
+            }
+        }
+
+        /// Steps with outputs whose last bits change; the last draft.
+        fn run(&mut self, steps: i32, pins: [Option<i32>; 2]) -> Draft {
+            let mut draft = Draft::Suspect;
+            for _ in 0..steps {
+                self.step += 1;
+                let noise = self.step % 7 - 3;
+                let [left_pin, right_pin] = pins.map(|pin| pin.map(|pin| SupplyShare(pin + noise)));
+                let inputs = Inputs {
+                    left_pin,
+                    right_pin,
+                    ..Inputs::default()
+                };
+                draft = self.signal.step(&inputs, false, &PARAMETERS);
+            }
+            draft
+        }
+    }
+
+    fn newton(draft: Draft) -> i32 {
+        match draft {
+            Draft::Measured(draft) => draft.0,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_draft_is_the_sum_of_both_pins_by_zero_and_span() {
+        let draft = newton(Pins::new().run(2_000, [Some(56_250), Some(54_375)]));
+        assert!((draft - 17_000).abs() < 20, "{draft} N");
+        let draft = newton(Pins::new().run(2_000, [Some(50_000), Some(50_000)]));
+        assert!(draft.abs() < 20, "{draft} N");
+    }
+
+    #[test]
+    fn a_missing_or_impossible_pin_is_lost_after_the_check_time_and_used_again_when_healthy() {
+        let good = [Some(55_000), Some(55_000)];
+        for (bad, trouble) in [
+            ([None, Some(55_000)], Trouble::PinRange),
+            ([Some(0), Some(55_000)], Trouble::PinRange),
+            ([Some(55_000), Some(99_500)], Trouble::PinRange),
+            ([Some(50_000), Some(56_000)], Trouble::PinsDisagree),
+        ] {
+            let mut pins = Pins::new();
+            let before = newton(pins.run(1_000, good));
+            assert_eq!(pins.run(PARAMETERS.check_time.0 - 1, bad), Draft::Suspect);
+            assert_eq!(pins.run(1, bad), Draft::Lost(trouble));
+            let healthy = PARAMETERS.healthy_time.0;
+            assert_eq!(pins.run(healthy - 1, good), Draft::Lost(trouble));
+            let after = newton(pins.run(100, good));
+            assert!((after - before).abs() < 50, "{before} and {after} N");
+        }
+    }
+
+    #[test]
+    fn a_short_gap_leaves_the_draft_as_it_was() {
+        let mut pins = Pins::new();
+        let before = newton(pins.run(1_000, [Some(55_000), Some(55_000)]));
+        assert_eq!(pins.run(20, [Some(100_000), Some(0)]), Draft::Suspect);
+        let after = newton(pins.run(1, [Some(55_000), Some(55_000)]));
+        assert!((after - before).abs() < 20, "{before} and {after} N");
+    }
+
+    #[test]
+    fn a_pin_that_stands_still_in_the_soil_is_not_used_and_then_lost() {
+        let mut pins = Pins::new();
+        pins.run(1_000, [Some(55_000), Some(55_000)]);
+        let inputs = Inputs {
+            left_pin: Some(SupplyShare(55_000)),
+            right_pin: Some(SupplyShare(55_001)),
+            ..Inputs::default()
+        };
+        let drafts: std::vec::Vec<Draft> = (0..600)
+            .map(|_| pins.signal.step(&inputs, false, &PARAMETERS))
+            .collect();
+        assert!(matches!(drafts[10], Draft::Measured(_)));
+        assert!(drafts[30..450].iter().all(|draft| *draft == Draft::Suspect));
+        assert_eq!(drafts[599], Draft::Lost(Trouble::PinFrozen));
+    }
+
+    #[test]
+    fn soil_is_left_at_half_of_the_draft_at_which_it_is_entered() {
+        let mut pins = Pins::new();
+        let output = |newton: i32| Some(50_000 + newton / 2 * 25_000 / 40_000);
+        let mut is_in_soil = |newton| {
+            pins.run(2_000, [output(newton), output(newton)]);
+            pins.signal.is_in_soil()
+        };
+        assert!(!is_in_soil(1_400));
+        assert!(is_in_soil(1_700));
+        assert!(is_in_soil(900));
+        assert!(!is_in_soil(600));
+    }
+}

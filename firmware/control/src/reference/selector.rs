@@ -1,0 +1,100 @@
+//! Selection of the function that determines the set point, each change of it without a step.
+//!
+//! ```text
+//!             in the soil, pins plausible             function switched off, or pins lost
+//! +-------+ ------------------------------> +-------+ -----------------------------------> +-------+
+//! | Lever |                                 | Draft |                                      | Holds |
+//! +-------+ <------------------------------ +-------+                                      +-------+
+//!   ^         above the ground                                                                |
+//!   +-----------------------------------------------------------------------------------------+
+//!                                           lever takes over
+//! ```
+//!
+//! The draft loop begins at the present set point, and begins there anew when another function of the draft is selected.
+
+use hitch_quantities::Function;
+use hitch_quantities::calibration::design_parameters::LockParameters;
+use hitch_quantities::units::MilliDegree;
+
+use super::draft_loop::{DraftLoop, Errors};
+use super::hold::Hold;
+use super::lag_loop::Gains;
+
+/// How far a held set point may be from the hitch: within it, a hitch at rest is not moved by the end of a function.
+const NEAR: MilliDegree = MilliDegree(1_000);
+
+/// What determines the set point.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum Active {
+    /// The lever.
+    #[default]
+    Lever,
+    /// A function of the draft.
+    Draft(Function, DraftLoop),
+    /// The depth at the end of a function.
+    Holds(Hold),
+}
+
+/// What a selection is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
+    /// Selected function; [`Function::Position`] as well if it lacks a set point.
+    pub function: Function,
+    /// Errors of the draft, while the pins are plausible.
+    pub errors: Option<Errors>,
+    /// The pins are lost.
+    pub lost: bool,
+    /// The implement is in the soil.
+    pub in_soil: bool,
+    /// Lever.
+    pub lever: MilliDegree,
+    /// Rocker angle.
+    pub angle: MilliDegree,
+    /// Set point of the last step.
+    pub present: MilliDegree,
+    /// The same in steps: where position control moves the hitch.
+    pub aim: MilliDegree,
+}
+
+impl Active {
+    /// One step.
+    #[must_use]
+    pub fn next(self, choice: &Choice, gains: Gains, lock: &LockParameters) -> Self {
+        let is_draft = choice.function != Function::Position;
+        match self {
+            Self::Lever => match choice.errors {
+                Some(errors) if is_draft && choice.in_soil => choice.begun(errors, gains),
+                _ => self,
+            },
+            Self::Draft(..) if !is_draft || choice.lost => choice.held(),
+            Self::Draft(..) if !choice.in_soil => Self::Lever,
+            Self::Draft(function, _) => match choice.errors {
+                Some(errors) if function != choice.function => choice.begun(errors, gains),
+                _ => self,
+            },
+            Self::Holds(mut hold) => match hold.is_over(choice.lever, lock) {
+                true => Self::Lever,
+                false => Self::Holds(hold),
+            },
+        }
+    }
+}
+
+impl Choice {
+    /// The selected function of the draft, from the present set point on.
+    fn begun(&self, errors: Errors, gains: Gains) -> Active {
+        Active::Draft(self.function, DraftLoop::from(self.present, errors, gains))
+    }
+
+    /// The present depth, from now on.
+    #[must_use]
+    pub fn held(&self) -> Active {
+        Active::Holds(Hold::new(self.here(), self.lever))
+    }
+
+    /// The present depth: where position control moves the hitch, if that is near.
+    #[must_use]
+    pub fn here(&self) -> MilliDegree {
+        self.aim.limited(self.angle - NEAR, self.angle + NEAR)
+    }
+}

@@ -1,0 +1,87 @@
+//! Calibration of draft, mix, depth limit and slip guard.
+//!
+//! The reasons refer to a three-furrow plough of 1.2 m at 25 cm and 1.8 m/s in loam, about 18 kN, on two pins of 40 kN.
+
+use super::parameter::parameter_group;
+use crate::units::{
+    Count, MilliDegree, MilliHertz, Millimetre, MillimetrePerSecond, Millisecond, Newton,
+    NewtonPerDegree, PerMille, SupplyShare,
+};
+
+parameter_group! {
+    /// Draft pins and draft control.
+    DraftParameters, "draft" {
+        /// Whether draft pins are fitted: 0 no, and all functions of draft and slip are off; 1 two pins.
+        fitted: Count = 0, 0..=1;
+        /// Output of the left pin without force: the middle of a ratiometric pin.
+        left_zero: SupplyShare = 50_000, 20_000..=80_000;
+        /// Output of the right pin without force.
+        right_zero: SupplyShare = 50_000, 20_000..=80_000;
+        /// Force on the left pin that adds a quarter of the supply to its output: its nominal force.
+        left_span: Newton = 40_000, 5_000..=320_000;
+        /// The same of the right pin.
+        right_span: Newton = 40_000, 5_000..=320_000;
+        /// Smallest output of a healthy pin: below it the wire is broken. 1.6 times the nominal force.
+        output_min: SupplyShare = 10_000, 1_000..=45_000;
+        /// Largest output of a healthy pin: above it the wire is shorted.
+        output_max: SupplyShare = 90_000, 55_000..=99_000;
+        /// Largest difference of the pins' forces without a draft: zeros and noise.
+        difference: Newton = 2_000, 100..=100_000;
+        /// Part of the draft by which the pins may differ besides: three quarters on one side, the rest on the other. A pin without force differs by all of it.
+        difference_share: PerMille = 500, 0..=900;
+        /// How long pins have to be implausible before they are lost. The draft is not used in this time.
+        check_time: Millisecond = 50, 1..=1_000;
+        /// How long pins have to be plausible before they are used again.
+        healthy_time: Millisecond = 500, 1..=10_000;
+        /// How long a pin may stand still to the last bit under load and is used: a healthy one, whose noise is four steps of the converter, repeats one sample in ten. At the fastest speed the hitch moves 2 degrees in it.
+        still_time: Millisecond = 20, 5..=1_000;
+        /// After which time it is lost.
+        frozen_time: Millisecond = 500, 50..=10_000;
+        /// Low-pass on the draft in work: a wavelength of 0.56 m at 1.8 m/s (US 5143159).
+        work_filter: MilliHertz = 3_200, 100..=50_000;
+        /// The same while the hitch moves above the ground, where the weight bounces on the tyres (US 5143159).
+        raised_filter: MilliHertz = 500, 50..=50_000;
+        /// Draft above which the implement is in the soil, and below half of which it is above the ground: a twelfth of the working draft, six times what is left of the pins' noise.
+        soil_draft: Newton = 1_500, 100..=100_000;
+        /// Change of the draft with the angle: 0.73 kN/cm in loam at 0.9 cm a degree.
+        force_per_degree: NewtonPerDegree = 650, 10..=50_000;
+        /// Crossover of the draft loop: soil that becomes twice as hard is compensated within 2 s, and position control is several times as fast.
+        crossover: MilliHertz = 300, 50..=300;
+        /// Distance over which the implement follows the links, whose lag the loop compensates: its own length. 0 compensates nothing.
+        length: Millimetre = 1_500, 0..=5_000;
+        /// Speed that is assumed where the ground speed is not known.
+        assumed_speed: MillimetrePerSecond = 1_800, 300..=6_000;
+        /// Deviation of the draft from its set point that moves nothing.
+        dead_band: PerMille = 20, 0..=200;
+        /// Smallest change of the set point of position control, one move for each: a sixth of the depth. In loam half of it moves the hitch twice as often, and takes another 3 % off the deviation of the draft. In mix it is weighted as the draft. Below `margin`, or the hitch does not go below the lever.
+        step: MilliDegree = 4_500, 0..=10_000;
+        /// How far below the lever draft and mix may lower the hitch: 4.5 cm. The lever raises the implement out of the soil in any function.
+        margin: MilliDegree = 5_000, 0..=30_000;
+    }
+}
+
+parameter_group! {
+    /// Slip guard.
+    SlipParameters, "slip" {
+        /// Highest slip limit that the operator may set, and the limit without a setting; 0 switches the guard off.
+        highest_limit: PerMille = 0, 0..=500;
+        /// Ground speed from which slip is limited: 3.2 km/h.
+        lowest_speed: MillimetrePerSecond = 889, 300..=3_000;
+        /// Time after which a speed that was not received is lost: five periods of 100 ms.
+        time_out: Millisecond = 500, 50..=5_000;
+        /// How long a speed may stand still to the last bit while the other one changes.
+        frozen_time: Millisecond = 3_000, 500..=60_000;
+        /// Low-pass on the slip: takes the noise of a radar to a third.
+        filter: MilliHertz = 800, 100..=10_000;
+        /// Change of the slip with the angle, on a soft patch.
+        slip_per_degree: PerMille = 13, 1..=200;
+        /// Crossover of the guard: that of draft control, as the implement follows both with the same lag.
+        crossover: MilliHertz = 300, 50..=500;
+        /// How far the guard may raise the hitch: 13 cm, half of the depth.
+        most_raise: MilliDegree = 15_000, 500..=45_000;
+        /// Averaging time of the rolling radius, above the ground.
+        radius_time: Millisecond = 4_000, 500..=60_000;
+        /// How far the rolling radius may differ from its nominal value.
+        radius_range: PerMille = 150, 0..=300;
+    }
+}

@@ -1,0 +1,163 @@
+//! Draft and slip control: what the operator selects, what determines the set point, and which sensor is missing.
+
+use crate::units::Count;
+
+/// Function of the hitch, with the code it has in inputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Function {
+    /// The lever is the position.
+    #[default]
+    Position = 0,
+    /// The draft is regulated, within the calibrated distance below the lever.
+    Draft = 1,
+    /// Errors of draft and position are weighted by the mix dial.
+    Mix = 2,
+    /// The draft is regulated, and the lever is the lowest position.
+    DepthLimit = 3,
+}
+
+impl Function {
+    /// The function with a code; [`Self::Position`] for an unknown one, or without.
+    #[must_use]
+    pub const fn from_code(code: Option<Count>) -> Self {
+        match code {
+            Some(Count(1)) => Self::Draft,
+            Some(Count(2)) => Self::Mix,
+            Some(Count(3)) => Self::DepthLimit,
+            _ => Self::Position,
+        }
+    }
+}
+
+/// What determines the set point, with the code it has on links and in traces; 0 is the lever alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Reason {
+    /// The draft.
+    Draft = 1,
+    /// Draft and position.
+    Mix = 2,
+    /// The draft, above the lever.
+    DepthLimit = 3,
+    /// The lever is the lowest position, and is reached.
+    Floor = 4,
+    /// The upper limit is reached.
+    Ceiling = 5,
+    /// The slip is above its limit.
+    Slip = 6,
+    /// A function of the draft is selected, but the implement is above the ground: the lever.
+    AboveGround = 7,
+    /// A function has ended or lost its sensor: the present depth is held until the lever takes over.
+    Holds = 8,
+}
+
+impl Reason {
+    /// All of them, in the order of their codes, which begin at 1.
+    pub const ALL: [Self; 8] = [
+        Self::Draft,
+        Self::Mix,
+        Self::DepthLimit,
+        Self::Floor,
+        Self::Ceiling,
+        Self::Slip,
+        Self::AboveGround,
+        Self::Holds,
+    ];
+
+    /// Name as it appears in text outputs.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Draft => "draft",
+            Self::Mix => "mix",
+            Self::DepthLimit => "depth-limit",
+            Self::Floor => "floor",
+            Self::Ceiling => "ceiling",
+            Self::Slip => "slip",
+            Self::AboveGround => "above-ground",
+            Self::Holds => "holds",
+        }
+    }
+}
+
+/// Sensor of draft or slip control that is lost, with the code it has on links and in traces; 0 is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Trouble {
+    /// A draft pin is missing or out of its range.
+    PinRange = 1,
+    /// The draft pins disagree.
+    PinsDisagree = 2,
+    /// A draft pin stands still to the last bit while the implement works.
+    PinFrozen = 3,
+    /// The ground speed is missing.
+    GroundSpeed = 4,
+    /// The wheel speed is missing.
+    WheelSpeed = 5,
+    /// A speed stands still to the last bit while the other one changes.
+    SpeedFrozen = 6,
+}
+
+impl Trouble {
+    /// All of them, in the order of their codes, which begin at 1.
+    pub const ALL: [Self; 6] = [
+        Self::PinRange,
+        Self::PinsDisagree,
+        Self::PinFrozen,
+        Self::GroundSpeed,
+        Self::WheelSpeed,
+        Self::SpeedFrozen,
+    ];
+
+    /// Name as it appears in text outputs.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::PinRange => "pin-range",
+            Self::PinsDisagree => "pins-disagree",
+            Self::PinFrozen => "pin-frozen",
+            Self::GroundSpeed => "ground-speed",
+            Self::WheelSpeed => "wheel-speed",
+            Self::SpeedFrozen => "speed-frozen",
+        }
+    }
+}
+
+/// Both in a byte: the reason in its low half, the trouble in its high half; 0 is none.
+pub(super) fn to_byte(reason: Option<Reason>, trouble: Option<Trouble>) -> u8 {
+    let reason = reason.map_or(0, |reason| reason as u8);
+    let trouble = trouble.map_or(0, |trouble| trouble as u8);
+    reason | trouble << 4
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_in_order_and_each_pair_has_its_own_byte() {
+        let reasons = Reason::ALL.iter().enumerate();
+        assert!(reasons.into_iter().all(|(at, of)| *of as usize == at + 1));
+        let troubles = Trouble::ALL.iter().enumerate();
+        assert!(troubles.into_iter().all(|(at, of)| *of as usize == at + 1));
+        assert_eq!(to_byte(None, None), 0);
+        assert_eq!(to_byte(Some(Reason::Slip), None), 6);
+        assert_eq!(to_byte(Some(Reason::Holds), Some(Trouble::PinFrozen)), 0x38);
+    }
+
+    #[test]
+    fn an_unknown_function_is_position_control() {
+        for (code, function) in [
+            (1, Function::Draft),
+            (2, Function::Mix),
+            (3, Function::DepthLimit),
+            (0, Function::Position),
+            (4, Function::Position),
+            (-1, Function::Position),
+        ] {
+            assert_eq!(Function::from_code(Some(Count(code))), function);
+        }
+        assert_eq!(Function::from_code(None), Function::Position);
+    }
+}

@@ -1,0 +1,84 @@
+//! What hitch and field do to each other.
+//!
+//! * The height of the lower links sets the depth: the share touches level ground at one angle of the rocker.
+//! * The soil loads the links by its vertical force and by the draft. A draft acts along the ground at the hitch point, which
+//!   moves to the rear by `dx` as it rises by `dh`, so it carries `D dx/dh` of the load (virtual work). The top link's part of
+//!   the draft is neglected, as in the pins' constants.
+//!
+//! The force of the soil is a load in kg to the hitch, whose inertia it is not: at 4 kN and the accelerations of a slow loop
+//! the error is small against the implement's mass.
+
+use hitch_field::body::GRAVITY_M_S2;
+use hitch_plant::Model;
+
+/// Geometry of the coupling.
+#[derive(Debug, Clone, Copy)]
+pub struct Coupling<'m> {
+    model: &'m Model,
+    touch_m: f64,
+    implement_kg: f64,
+}
+
+impl<'m> Coupling<'m> {
+    /// An implement whose share touches the ground at a rocker angle.
+    #[must_use]
+    pub fn new(model: &'m Model, touch_deg: f64, implement_kg: f64) -> Self {
+        let mut coupling = Self {
+            model,
+            touch_m: 0.0,
+            implement_kg,
+        };
+        coupling.touch_m = coupling.height_m(touch_deg);
+        coupling
+    }
+
+    fn height_m(&self, angle_deg: f64) -> f64 {
+        let linkage = self.model.linkage();
+        linkage
+            .at(linkage.piston_m(angle_deg.to_radians()))
+            .height_m
+    }
+
+    /// Depth of the links at a rocker angle, m; negative above ground.
+    #[must_use]
+    pub fn depth_m(&self, angle_deg: f64) -> f64 {
+        self.touch_m - self.height_m(angle_deg)
+    }
+
+    /// Rocker angle at a depth of the links, m, degree.
+    ///
+    /// # Panics
+    /// If the linkage does not reach it.
+    #[must_use]
+    pub fn angle_deg(&self, depth_m: f64) -> f64 {
+        let (mut low, mut high) = (44.1, 135.9);
+        assert!(
+            (self.depth_m(high)..=self.depth_m(low)).contains(&depth_m),
+            "{depth_m} m are out of the linkage's reach"
+        );
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            match self.depth_m(middle) > depth_m {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        low
+    }
+
+    /// Load of the hitch, kg, with forces of the soil: draft, and upwards, N.
+    ///
+    /// # Panics
+    /// If the linkage has no posture at this angle.
+    #[must_use]
+    pub fn load_kg(&self, angle_deg: f64, draft_n: f64, vertical_n: f64) -> f64 {
+        let joints = self
+            .model
+            .joints(angle_deg.to_radians())
+            .expect("an angle of the plant");
+        let link = joints.hitch_point - joints.pivot;
+        let rearwards_per_rise = -link.y / link.x.abs();
+        let carried_n = vertical_n + draft_n * rearwards_per_rise;
+        (self.implement_kg - carried_n / GRAVITY_M_S2).max(0.0)
+    }
+}

@@ -1,0 +1,151 @@
+//! The loop, in steps of a millisecond.
+
+use hitch_field::soil::SoilPlan;
+use hitch_field::terrain::Terrain;
+use hitch_field::tractor::{Demand, Outputs as Field, Readings, Tractor, TractorConstants};
+use hitch_plant::Model;
+use hitch_quantities::units::{Count, MillimetrePerSecond, Newton, PerMille, SupplyShare};
+use hitch_quantities::{Function, Inputs, ValidCalibration};
+use hitch_workbench::closed_loop::{ClosedLoop, OIL_TEMPERATURE_C, Sample};
+
+use super::coupling::Coupling;
+
+/// Rocker angle at which the share touches the ground, degree.
+pub const TOUCH_DEG: f64 = 95.0;
+/// Rocker angle of the raised hitch at the start, degree.
+pub const RAISED_DEG: f64 = 125.0;
+/// Step of a 12-bit converter that measures a pin over its supply, thousandths of a percent.
+const CONVERTER_STEP: f64 = 1e5 / 4096.0;
+/// Period in which the bus tells the speeds, ms.
+const BUS_PERIOD_MS: u64 = 100;
+const STEP_S: f64 = 1e-3;
+
+/// What the operator has set.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Settings {
+    /// Selected function.
+    pub function: Function,
+    /// Set point of the draft, N.
+    pub draft_n: Option<f64>,
+    /// Mix dial, 0 to 1.
+    pub mix: Option<f64>,
+    /// Slip limit, 0 to 1.
+    pub slip_limit: Option<f64>,
+}
+
+/// A millisecond of the loop.
+#[derive(Debug, Clone, Copy)]
+pub struct FieldSample {
+    /// Hitch and controller.
+    pub hitch: Sample,
+    /// Tractor and field.
+    pub field: Field,
+}
+
+/// Hitch, controller, tractor and field.
+pub struct FieldRig<'m> {
+    hitch: ClosedLoop<'m>,
+    tractor: Tractor,
+    coupling: Coupling<'m>,
+    readings: Option<Readings>,
+    step: u64,
+}
+
+impl<'m> FieldRig<'m> {
+    /// A tractor that stands with a raised implement, whose lever is at the hitch. The seed determines soil and noise.
+    #[must_use]
+    pub fn new(
+        model: &'m Model,
+        calibration: &ValidCalibration,
+        (constants, soil): (TractorConstants, SoilPlan),
+        terrain: Terrain,
+        seed: u64,
+    ) -> Self {
+        let implement_kg = constants.implement.mass_kg;
+        let mut hitch = ClosedLoop::new(
+            model,
+            calibration,
+            implement_kg,
+            OIL_TEMPERATURE_C,
+            RAISED_DEG,
+            seed,
+        );
+        hitch.pick_up();
+        Self {
+            hitch,
+            tractor: Tractor::new(constants, soil, terrain, seed),
+            coupling: Coupling::new(model, TOUCH_DEG, implement_kg),
+            readings: None,
+            step: 0,
+        }
+    }
+
+    /// Geometry of hitch and ground.
+    #[must_use]
+    pub const fn coupling(&self) -> &Coupling<'m> {
+        &self.coupling
+    }
+
+    /// The tractor.
+    pub const fn tractor(&mut self) -> &mut Tractor {
+        &mut self.tractor
+    }
+
+    /// One millisecond; `tell` can modify the inputs of the controller (faults of sensors).
+    pub fn step(
+        &mut self,
+        lever_deg: f64,
+        speed_m_s: f64,
+        settings: &Settings,
+        tell: impl FnOnce(&mut Inputs),
+    ) -> FieldSample {
+        let readings = self.readings;
+        let is_told = self.step.is_multiple_of(BUS_PERIOD_MS);
+        let hitch = self.hitch.step_with(
+            lever_deg,
+            |inputs| {
+                if let Some(readings) = readings {
+                    add_readings(inputs, &readings, is_told);
+                }
+                add_settings(inputs, settings);
+                tell(inputs);
+            },
+            |_, _| {},
+        );
+        let field = self.tractor.step(
+            Demand {
+                link_depth_m: self.coupling.depth_m(hitch.angle_deg),
+                speed_m_s,
+            },
+            STEP_S,
+        );
+        let load_kg = self
+            .coupling
+            .load_kg(hitch.angle_deg, field.draft_n, field.vertical_n);
+        self.hitch.set_load_kg(load_kg);
+        self.readings = Some(field.readings);
+        self.step += 1;
+        FieldSample { hitch, field }
+    }
+}
+
+fn add_readings(inputs: &mut Inputs, readings: &Readings, is_told: bool) {
+    let pin = |share: f64| {
+        let read = (share * 1e5 / CONVERTER_STEP).round() * CONVERTER_STEP;
+        Some(SupplyShare(read.round() as i32))
+    };
+    inputs.left_pin = pin(readings.pins.left);
+    inputs.right_pin = pin(readings.pins.right);
+    let speed =
+        |m_s: f64| is_told.then_some(MillimetrePerSecond((m_s.max(0.0) * 1e3).round() as i32));
+    inputs.ground_speed = speed(readings.ground_speed_m_s);
+    inputs.wheel_speed = speed(readings.wheel_speed_m_s);
+}
+
+fn add_settings(inputs: &mut Inputs, settings: &Settings) {
+    let share = |part: f64| PerMille((part * 1e3).round() as i32);
+    inputs.function = Some(Count(settings.function as i32));
+    inputs.draft_set_point = settings.draft_n.map(|force| Newton(force.round() as i32));
+    inputs.mix = settings.mix.map(share);
+    inputs.slip_limit = settings.slip_limit.map(share);
+}
