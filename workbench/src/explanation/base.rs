@@ -16,7 +16,7 @@ pub enum Base<'a> {
     /// A model.
     Alone(&'a ModelArg, Model),
     /// A model beside its baseline.
-    Since(Since),
+    Since(Box<Since>),
 }
 
 /// A campaign that has been read, and what it is compared with.
@@ -38,7 +38,7 @@ impl<'a> Base<'a> {
         match baseline.folder() {
             Some(folder) => {
                 let (model, campaign) = model.load_for(folder)?;
-                Ok(Self::Since(Since::new(&campaign, model)))
+                Ok(Self::Since(Box::new(Since::new(&campaign, model))))
             }
             None => Ok(Self::Alone(model, model.load()?)),
         }
@@ -48,7 +48,8 @@ impl<'a> Base<'a> {
     #[must_use]
     pub fn model(&self) -> &Model {
         match self {
-            Self::Alone(_, model) | Self::Since(Since { model, .. }) => model,
+            Self::Alone(_, model) => model,
+            Self::Since(since) => &since.model,
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! The equations of the solver contain every hook. Asking each of them at every stage of every step costs as much as the
 //! physics, and most plants have few effects. The solver is therefore compiled once for each set of kinds, from the same
-//! source: where a kind does not act, its hooks are those of [`NO_EFFECTS`], a constant that the compiler evaluates.
+//! source: where a kind does not act, its hooks are those of `NO_EFFECTS`, a constant that the compiler evaluates.
 
 use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::elements::Hose;
