@@ -28,7 +28,7 @@ pub(crate) const TOLERATED_DISCREPANCY: f64 = 9.0;
 
 /// Relative accuracy with which an effect of the right form reproduces a change of the channels: tables, areas and
 /// loads are accurate to half a percent, and the instant of ground contact to one sample.
-const EXACT: f64 = 0.03;
+pub(crate) const EXACT: f64 = 0.03;
 
 /// Relative accuracy of the valves' flow tables, and thus of any model based on them: 0.1 in 60 l/min, which a hundred
 /// samples of a flow bench would resolve.

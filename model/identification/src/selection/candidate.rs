@@ -5,7 +5,7 @@ use std::f64::consts::SQRT_2;
 use hitch_plant::{AddedEffect, Effect, ParameterKind};
 use rayon::prelude::*;
 
-use crate::adequacy::lack_of_fit::{SLOW_NOISE, TOLERATED_DISCREPANCY};
+use crate::adequacy::lack_of_fit::{EXACT, SLOW_NOISE, TOLERATED_DISCREPANCY};
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::estimate::Shared;
@@ -188,7 +188,9 @@ fn weigh_with(
             let deviation = (variance * signature.inflation / signature.square).sqrt();
             let value = fit.estimate.get(signature.shared);
             let range = &effect.parameters()[signature.parameter];
-            let systematic = 1.96 * systematic(&fit.estimate.effects[index], signature.parameter);
+            let systematic = 1.96
+                * systematic(&fit.estimate.effects[index], signature.parameter)
+                    .hypot(of_discrepancy(experiment, &fit, index, signature.parameter));
             let predicted = 1.96 * deviation * fit.estimate.scale(signature.shared);
             let profile = ProfileLikelihood {
                 problem,
@@ -238,6 +240,20 @@ pub(crate) fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
     let is_relative = parameter > 0 && parameters[parameter].kind == ParameterKind::Ratio;
     let whole = if is_relative { 1.0 } else { 0.0 };
     absolute.hypot(SYSTEMATIC_SHARE * values[parameter].abs().max(whole))
+}
+
+/// Error of a change of a parameter beside a baseline, one sigma, in its unit; zero without one. The model is wrong there, and
+/// the response to a change is as wrong as the model's responses are, however much noise remains.
+fn of_discrepancy(experiment: &Experiment, fit: &Fit, index: usize, parameter: usize) -> f64 {
+    if !experiment.is_beside_baseline() {
+        return 0.0;
+    }
+    let added = &fit.estimate.effects[index];
+    let before = match (parameter, fit.estimate.adopted_as(added.effect.id())) {
+        (0, Some(adopted)) => adopted.size,
+        _ => added.effect.parameters()[parameter].null,
+    };
+    EXACT * (added.values[parameter] - before).abs()
 }
 
 /// A parameter's signature per step of one scale, with all other free parameters projected out.
