@@ -279,22 +279,25 @@ impl Step {
 impl Step {
     /// Why an effect that reduces the error is not named, as a sentence.
     pub fn doubt(&self) -> String {
-        let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
         format!(
-            "Not named: {}, {}{}. The error with it is {:.2} sigma, but its probability is {:.2}.",
+            "Not named: {}, {}. The error with it is {:.2} sigma, but its probability is {:.2}.",
             self.name(),
-            self.change(),
-            values.join(", "),
+            self.sizes(),
             self.error_after,
             self.confidence
         )
+    }
+
+    /// Its parameters, and the size that it had before.
+    fn sizes(&self) -> String {
+        let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
+        format!("{}{}", self.change(), values.join(", "))
     }
 }
 
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
-        let head = format!("{}: {}{}", self.name(), self.change(), values.join(", "));
+        let head = format!("{}: {}", self.name(), self.sizes());
         // The number that precedes it takes the place of the indentation.
         writeln!(f, "{}", indented(&head, DETAIL).trim_start())?;
         let mut detail = |line: &str| writeln!(f, "{}", indented(line, DETAIL));

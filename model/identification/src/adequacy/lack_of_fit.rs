@@ -150,9 +150,7 @@ pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
         for channel in 0..4 {
             for sample in 0..run.len() {
                 let at = channel * run.len() + sample;
-                let widened = run.widened[channel].get(sample);
-                let discrepancy = widened.map_or(Some(0.0), |widened| widened.discrepancy);
-                if let Some(discrepancy) = discrepancy
+                if let Some(discrepancy) = run.discrepancy(at)
                     && weights.scale[at] > 0.0
                 {
                     let key = (channel, run.regimes[sample], kind, level);

@@ -327,12 +327,12 @@ impl ReadyRun {
         channels.all(|values| values[one].is_finite() == values[other].is_finite())
     }
 
-    /// Share of the variance of a residual, by its index, that is a discrepancy of the model known from a baseline: all of it
-    /// in a state that the baseline does not show.
+    /// Share of the variance of a residual, by its index, that is a discrepancy of the model known from a baseline; `None` in a
+    /// state that the baseline does not show.
     #[must_use]
-    pub(crate) fn discrepancy(&self, at: usize) -> f64 {
+    pub(crate) fn discrepancy(&self, at: usize) -> Option<f64> {
         let widened = self.widened[at / self.len()].get(at % self.len());
-        widened.map_or(0.0, |widened| widened.discrepancy.unwrap_or(1.0))
+        widened.map_or(Some(0.0), |widened| widened.discrepancy)
     }
 
     /// Number of samples.

@@ -350,7 +350,8 @@ pub(crate) fn explained_share(
             weight_square += square * square;
             explained += square * square;
             left += square * (residual * residual - 1.0);
-            discrepancy += square * run.discrepancy(at);
+            // Nothing is known of a state that the baseline does not show.
+            discrepancy += square * run.discrepancy(at).unwrap_or(1.0);
         }
     }
     if weight == 0.0 {
