@@ -2,7 +2,7 @@
 
 use super::rig::FieldSample;
 
-/// Corner of the low-pass through which draft is judged besides, Hz: what the loop is told.
+/// Corner frequency of a low-pass, Hz. The draft is judged with and without it; the loop gets the filtered draft.
 const JUDGED_HZ: f64 = 3.2;
 
 /// Mean and standard deviation.
