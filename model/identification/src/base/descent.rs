@@ -1,4 +1,4 @@
-//! Bounded Levenberg-Marquardt over the corrections of the constants and each run's load error.
+//! Bounded Levenberg-Marquardt over the corrections of the constants, the clock offsets and each run's load error.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -54,29 +54,34 @@ fn step(
     point: &Point,
     damping: f64,
 ) -> Option<Point> {
-    let prior = problem.prior;
-    let mut matrix = &normal.matrix + &prior.precision;
-    let mut right = &normal.right - &prior.precision * &point.theta;
+    let precision = problem.precision(&problem.prior.precision);
+    let present = problem.unknowns(point);
+    let (information, gradient) = normal.reduced(damping);
+    let mut matrix = information + &precision;
+    let mut right = gradient - &precision * &present;
     for k in 0..matrix.nrows() {
         matrix[(k, k)] += damping * matrix[(k, k)];
     }
-    for k in (0..problem.held.len()).filter(|&k| problem.held[k]) {
+    let fixed = problem.fixed(point);
+    for k in (0..fixed.len()).filter(|&k| fixed[k]) {
         hold(&mut matrix, &mut right, k);
     }
-    let at_an_end: Vec<usize> = (0..point.theta.len())
-        .filter(|&k| prior.is_at_an_end(&point.theta, k))
-        .collect();
     let first = matrix.clone().cholesky()?.solve(&right);
-    for k in at_an_end {
-        if first[k] * point.theta[k] > 0.0 {
+    for k in (0..fixed.len()).filter(|&k| problem.is_at_an_end(point, k)) {
+        if first[k] * present[k] > 0.0 {
             hold(&mut matrix, &mut right, k);
         }
     }
     let step: DVector<f64> = matrix.cholesky()?.solve(&right);
-    let theta = prior.bounded(&(&point.theta + &step));
-    let taken = &theta - &point.theta;
-    let estimate = normal.with_loads(&point.estimate, &taken);
-    Some(problem.point(weights, theta, estimate))
+    let (theta, estimate) = problem.within_ranges(&(&present + step), &point.estimate);
+    let moved = Point {
+        theta,
+        estimate,
+        cost: f64::INFINITY,
+    };
+    let taken = problem.unknowns(&moved) - present;
+    let estimate = normal.with_loads(&moved.estimate, &taken, damping);
+    Some(problem.point(weights, moved.theta, estimate))
 }
 
 /// Removes an unknown from the normal equations: its step is zero.

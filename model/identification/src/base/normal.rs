@@ -1,5 +1,9 @@
 //! Residuals of a campaign with corrected constants, their sensitivities, and the normal equations with each run's load
 //! error eliminated.
+//!
+//! The unknowns are the corrections of the constants and then the clock offsets, in prior sigmas. Lags of the machine and
+//! offsets of the clocks shift the same channels, so a descent that moved them in turns would hardly advance, and an
+//! interval of a lag with the clocks fixed would be too narrow.
 
 use hitch_plant::Model;
 use nalgebra::{DMatrix, DVector};
@@ -10,8 +14,10 @@ use crate::constants::parameter::Parameter;
 use crate::constants::prior::Prior;
 use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 use crate::data::problem::Problem;
-use crate::estimate::Estimate;
+use crate::data::trace_cache::CurrentShift;
+use crate::estimate::{CLOCKS, Estimate};
 use crate::estimation::jacobian::{dot, huber, huber_residuals, square_sum};
+use crate::estimation::slow_columns::offset_columns_of_run;
 use crate::residuals::whitening::Weights;
 
 /// Step of a difference quotient to either side, in sigmas of the prior. Quotients are central: some directions are
@@ -55,7 +61,7 @@ struct Sides {
 /// Sensitivities of one run.
 pub struct RunColumns {
     residual: Vec<f64>,
-    /// One column per unknown.
+    /// One column per unknown: the constants, then the clocks.
     pub columns: Vec<Vec<f64>>,
     load: Option<Vec<f64>>,
     load_value: f64,
@@ -75,12 +81,10 @@ struct LoadRow {
     pull: f64,
 }
 
-/// Normal equations of all runs, without the prior.
+/// Normal equations of all runs, without the prior of the unknowns.
 pub struct Normal {
-    /// Information matrix of the campaign.
-    pub matrix: DMatrix<f64>,
-    /// Gradient of the residuals.
-    pub right: DVector<f64>,
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
     loads: Vec<Option<LoadRow>>,
 }
 
@@ -106,6 +110,53 @@ impl BaseProblem<'_> {
             theta,
             estimate,
             cost,
+        }
+    }
+
+    /// Precision of the prior of all unknowns, given that of the constants.
+    pub fn precision(&self, of_constants: &DMatrix<f64>) -> DMatrix<f64> {
+        let (constants, clocks) = (of_constants.nrows(), CLOCKS.len());
+        let mut precision = DMatrix::identity(constants + clocks, constants + clocks);
+        let mut block = precision.view_mut((0, 0), (constants, constants));
+        block.copy_from(of_constants);
+        precision
+    }
+
+    /// All unknowns at a point, in the order of the columns.
+    pub fn unknowns(&self, point: &Point) -> DVector<f64> {
+        let clocks = CLOCKS.map(|clock| point.estimate.get(clock) / point.estimate.scale(clock));
+        let all = point.theta.iter().copied().chain(clocks);
+        DVector::from_iterator(point.theta.len() + CLOCKS.len(), all)
+    }
+
+    /// Corrections and estimate at given unknowns, within their ranges.
+    pub fn within_ranges(
+        &self,
+        unknowns: &DVector<f64>,
+        estimate: &Estimate,
+    ) -> (DVector<f64>, Estimate) {
+        let constants = self.parameters.len();
+        let theta = self
+            .prior
+            .bounded(&unknowns.rows(0, constants).into_owned());
+        let mut estimate = estimate.clone();
+        for (clock, &sigmas) in CLOCKS.into_iter().zip(unknowns.iter().skip(constants)) {
+            estimate.set(clock, sigmas * estimate.scale(clock));
+        }
+        (theta, estimate)
+    }
+
+    /// Whether each unknown is fixed.
+    pub fn fixed(&self, point: &Point) -> Vec<bool> {
+        let clocks = CLOCKS.map(|clock| point.estimate.range(clock) == (0.0, 0.0));
+        self.held.iter().copied().chain(clocks).collect()
+    }
+
+    /// Whether an unknown is at an end of its range.
+    pub fn is_at_an_end(&self, point: &Point, unknown: usize) -> bool {
+        match unknown.checked_sub(self.parameters.len()) {
+            None => self.prior.is_at_an_end(&point.theta, unknown),
+            Some(clock) => point.estimate.is_at_an_end(CLOCKS[clock]),
         }
     }
 
@@ -157,14 +208,14 @@ impl BaseProblem<'_> {
             let trace = run.simulate(model, nuisance, &estimate.clocks);
             huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0)
         };
-        let here = residual(model, estimate.nuisances[index]);
+        let nuisance = estimate.nuisances[index];
+        let here = residual(model, nuisance);
         // The residual decreases where the simulation increases.
         let column = |down: Vec<f64>, up: Vec<f64>, apart: f64| -> Vec<f64> {
             let both = down.iter().zip(up);
             both.map(|(down, up)| (down - up) / apart).collect()
         };
-        let nuisance = estimate.nuisances[index];
-        let columns = moved
+        let mut columns: Vec<Vec<f64>> = moved
             .par_iter()
             .map(|moved| match moved {
                 Some(Sides { down, up, apart }) => {
@@ -173,6 +224,15 @@ impl BaseProblem<'_> {
                 None => vec![0.0; here.len()],
             })
             .collect();
+        let plain = run.trace(model, nuisance, CurrentShift::default());
+        let clocks = estimate.clocks;
+        columns.extend(offset_columns_of_run(
+            self.experiment,
+            index,
+            weights,
+            &plain,
+            clocks,
+        ));
         let load = run.on_hitch().then(|| {
             let [down, up] = [-0.5, 0.5].map(|sigmas| {
                 let load = nuisance.load + sigmas * LOAD_PRIOR;
@@ -211,16 +271,12 @@ impl RunColumns {
             }
         }
         let pulls = self.columns.iter().map(|c| dot(c, &self.residual));
-        let mut right = DVector::from_iterator(size, pulls);
+        let right = DVector::from_iterator(size, pulls);
         let load = self.load.as_ref().map(|load| LoadRow {
             coupling: DVector::from_iterator(size, self.columns.iter().map(|c| dot(c, load))),
             square: dot(load, load) + 1.0,
             pull: dot(load, &self.residual) - self.load_value,
         });
-        if let Some(load) = &load {
-            matrix -= &load.coupling * load.coupling.transpose() / load.square;
-            right -= &load.coupling * (load.pull / load.square);
-        }
         RunNormal {
             matrix,
             right,
@@ -247,12 +303,25 @@ impl Normal {
         normal
     }
 
-    /// An estimate with the load errors that follow from a step of the unknowns.
-    pub fn with_loads(&self, estimate: &Estimate, step: &DVector<f64>) -> Estimate {
+    /// Information matrix and gradient of the unknowns, with the load errors eliminated. The damping of a step holds for the
+    /// load errors too.
+    pub fn reduced(&self, damping: f64) -> (DMatrix<f64>, DVector<f64>) {
+        let (mut matrix, mut right) = (self.matrix.clone(), self.right.clone());
+        for load in self.loads.iter().flatten() {
+            let square = load.square * (1.0 + damping);
+            matrix -= &load.coupling * load.coupling.transpose() / square;
+            right -= &load.coupling * (load.pull / square);
+        }
+        (matrix, right)
+    }
+
+    /// An estimate with the load errors that follow from a damped step of the unknowns.
+    pub fn with_loads(&self, estimate: &Estimate, step: &DVector<f64>, damping: f64) -> Estimate {
         let mut moved = estimate.clone();
         for (run, load) in self.loads.iter().enumerate() {
             if let Some(load) = load {
-                let sigmas = (load.pull - load.coupling.dot(step)) / load.square;
+                let square = load.square * (1.0 + damping);
+                let sigmas = (load.pull - load.coupling.dot(step)) / square;
                 moved.set_load(run, estimate.load(run) + sigmas);
             }
         }

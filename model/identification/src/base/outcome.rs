@@ -174,7 +174,7 @@ fn with_sensors(problem: &BaseProblem<'_>, inseparable: &[bool], point: Point) -
     kept
 }
 
-/// One round: constants and loads under new weights, then clocks and loads.
+/// One round: constants, clocks and loads under new weights, then the search of the clocks.
 fn improved(problem: &BaseProblem<'_>, point: Point, coarse: bool) -> Point {
     let Some(model) = problem.model(&point.theta) else {
         return point;
@@ -206,20 +206,21 @@ fn posterior(problem: &BaseProblem<'_>, point: &Point) -> (Vec<f64>, Vec<bool>) 
     let Some((fit, columns)) = found else {
         return (prior.sigma.clone(), vec![false; prior.sigma.len()]);
     };
-    let normal = Normal::of(&columns);
+    let (matrix, _) = Normal::of(&columns).reduced(0.0);
     let unknowns = problem.parameters.iter().enumerate();
     unknowns
         .map(|(unknown, parameter)| {
             let column = |run: &RunColumns| run.columns[unknown].clone();
             let signature: Vec<Vec<f64>> = columns.iter().map(column).collect();
             let inflation = variance_inflation(problem.experiment, &fit.residuals, &signature);
-            let information = &normal.matrix / (fit.variance() * inflation);
+            let information = &matrix / (fit.variance() * inflation);
             let largest = prior.sigma[unknown];
-            let sigma = sigma_of(&information + &prior.precision, unknown, largest);
+            let precision = problem.precision(&prior.precision);
+            let sigma = sigma_of(&information + precision, unknown, largest);
             let alone = match parameter.is_flow() {
                 true => sigma,
                 false => sigma_of(
-                    information + prior.widened(WIDER, unknown),
+                    information + problem.precision(&prior.widened(WIDER, unknown)),
                     unknown,
                     largest,
                 ),

@@ -1,9 +1,11 @@
 //! Sensitivities to the nuisance parameters: clocks, loads and free constants. They hardly change between iterations.
 
 use hitch_plant::Channel;
+use hitch_plant::simulation::Trace;
 use rayon::prelude::*;
 
-use crate::data::clocks::OFFSET_PRIOR_S;
+use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
+use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::{Estimate, Shared};
@@ -44,41 +46,50 @@ fn load_columns(
 }
 
 /// Sensitivities of all runs to the channels' clock offsets, per step of one prior sigma; by channel, then by run.
-///
-/// An offset only shifts a channel of an existing trace: one simulation serves all four.
 fn offset_columns(
     problem: Problem<'_>,
     weights: &Weights,
     estimate: &Estimate,
 ) -> [Vec<Vec<f64>>; 4] {
-    let Problem {
-        experiment, model, ..
-    } = problem;
-    let model = estimate.applied_to(model);
+    let Problem { experiment, .. } = problem;
+    let model = estimate.applied_to(problem.model);
     let columns: Vec<[Vec<f64>; 4]> = (0..experiment.runs.len())
         .into_par_iter()
         .map(|index| {
-            let run = &experiment.runs[index];
-            let (time_s, clocks) = (&run.drive.time_s, estimate.clocks);
-            let plain = run.trace(&model, estimate.nuisances[index], CurrentShift::default());
-            let stamped = run.stamped(&plain, &clocks);
-            let base = huber(vec![weights.runs[index].whiten(run, &stamped)]);
-            std::array::from_fn(|channel| {
-                if channel == Channel::PumpPressure.index() && !experiment.ringing {
-                    // A clock would move only its jumps, and samples next to those are left out.
-                    return vec![0.0; base[0].len()];
-                }
-                let mut moved = clocks;
-                moved.offsets_s[channel] += STEP_OF_OFFSET * OFFSET_PRIOR_S;
-                let mut trace = stamped.clone();
-                let late = moved.stamped_channel(Channel::ALL[channel], time_s, &plain);
-                trace.channels[channel] = late;
-                let moved = huber(vec![weights.runs[index].whiten(run, &trace)]);
-                quotient(&base, moved, STEP_OF_OFFSET).swap_remove(0)
-            })
+            let nuisance = estimate.nuisances[index];
+            let plain = experiment.runs[index].trace(&model, nuisance, CurrentShift::default());
+            offset_columns_of_run(experiment, index, weights, &plain, estimate.clocks)
         })
         .collect();
     std::array::from_fn(|channel| columns.iter().map(|run| run[channel].clone()).collect())
+}
+
+/// Sensitivities of one run to the channels' clock offsets, per step of one prior sigma, by channel.
+///
+/// An offset only shifts a channel of the trace: one simulation serves all four.
+pub(crate) fn offset_columns_of_run(
+    experiment: &Experiment,
+    index: usize,
+    weights: &Weights,
+    plain: &Trace,
+    clocks: Clocks,
+) -> [Vec<f64>; 4] {
+    let (run, weights) = (&experiment.runs[index], &weights.runs[index]);
+    let stamped = run.stamped(plain, &clocks);
+    let base = huber(vec![weights.whiten(run, &stamped)]);
+    std::array::from_fn(|channel| {
+        if channel == Channel::PumpPressure.index() && !experiment.ringing {
+            // A clock would move only its jumps, and samples next to those are left out.
+            return vec![0.0; base[0].len()];
+        }
+        let mut moved = clocks;
+        moved.offsets_s[channel] += STEP_OF_OFFSET * OFFSET_PRIOR_S;
+        let mut trace = stamped.clone();
+        let late = moved.stamped_channel(Channel::ALL[channel], &run.drive.time_s, plain);
+        trace.channels[channel] = late;
+        let moved = huber(vec![weights.whiten(run, &trace)]);
+        quotient(&base, moved, STEP_OF_OFFSET).swap_remove(0)
+    })
 }
 
 /// Sensitivities of all runs to the free constants, per step of one prior sigma; by direction, then by run. The
