@@ -15,7 +15,7 @@
 use std::sync::Arc;
 
 use hitch_plant::simulation::Trace;
-use hitch_plant::{Channel, Currents, Model, units};
+use hitch_plant::{Channel, Model};
 use rayon::prelude::*;
 
 use crate::data::experiment::{Experiment, ReadyRun, Widening};
@@ -24,16 +24,11 @@ use crate::data::regime::Regime;
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
 use crate::residuals::contact_mask::contact_mask;
+use crate::residuals::phase::timing_errors_s;
+use crate::residuals::walk::Walk;
 
 /// Samples whose standard deviation exceeds this multiple of the instrument's noise are left out.
 const LARGEST_DEVIATION: f64 = 8.0;
-
-/// Distance from an end of the swing, degree, within which the hitch rests against the stop. The angle's random walk is
-/// reset there: the hitch arrives slightly earlier or later than simulated, and then stands at the stop.
-const AT_A_STOP_DEG: f64 = 0.2;
-
-/// Time after leaving a stop during which the trapped oil still rings, s: a heavy load decays to a quarter in it.
-const AFTER_A_STOP_S: f64 = 1.5;
 
 /// Uncertainty of the sampling time, one sigma, s: a twentieth of a 50 Hz sample. On ramps it changes the flow, after a
 /// switch the phase of a ringing pressure.
@@ -166,10 +161,14 @@ impl RunWeights {
             kept: vec![true; run.len()],
         };
         let at_an_edge = |sample: usize| edges.as_ref().is_some_and(|edges| edges[sample]);
-        let stops = at_a_stop(run, model, [&below, &above]);
+        let walk = Walk::new(experiment, run, model, [&below, &above]);
         let contact_mask = contact_mask(run, model, [&below, &above]);
-        let is_discontinuous = |sample: usize| stops[sample] || contact_mask[sample];
+        let is_discontinuous = |sample: usize| walk.at_a_stop[sample] || contact_mask[sample];
         let ringing = experiment.ringing;
+        let late_s = match ringing && run.on_hitch() {
+            true => timing_errors_s(run, model, &below, &walk.deg),
+            false => vec![0.0; run.len()],
+        };
         for channel in [
             Channel::PumpPressure,
             Channel::CylinderPressure,
@@ -193,6 +192,10 @@ impl RunWeights {
                 let spread =
                     0.5 * (above.channel(channel)[sample] - below.channel(channel)[sample]);
                 let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
+                let shift = match channel {
+                    Channel::CylinderPressure => shift * (late_s[sample] / TIMING_S).hypot(1.0),
+                    _ => shift,
+                };
                 let noise = sigma / run.averaged[sample].sqrt();
                 let at_rest = match run.regimes[sample] {
                     Regime::Holding => stuck,
@@ -208,7 +211,7 @@ impl RunWeights {
                 }
             }
         }
-        weights.filter_angle(experiment, run, model, [&below, &above]);
+        weights.filter_angle(experiment, run, &walk.steps_deg);
         weights.widen(&run.widened);
         weights
     }
@@ -225,23 +228,16 @@ impl RunWeights {
     }
 
     /// Gains of the scalar Kalman filter for the random walk of the angle.
-    fn filter_angle(
-        &mut self,
-        experiment: &Experiment,
-        run: &ReadyRun,
-        model: &Model,
-        traces: [&Trace; 2],
-    ) {
+    fn filter_angle(&mut self, experiment: &Experiment, run: &ReadyRun, steps_deg: &[f64]) {
         let Some(measured) = &run.measured[Channel::RockerAngle.index()] else {
             return;
         };
         let of_sample = experiment.noise[Channel::RockerAngle.index()].powi(2);
         let offset = Channel::RockerAngle.index() * run.len();
-        let steps = walk_steps_deg(experiment, run, model, traces);
         // The initial start angle has the uncertainty of one sensor reading.
         let mut variance = of_sample;
         for (sample, value) in measured.iter().enumerate() {
-            variance += steps[sample] * steps[sample];
+            variance += steps_deg[sample] * steps_deg[sample];
             let noise = of_sample / run.averaged[sample];
             if value.is_finite() {
                 let total = variance + noise;
@@ -374,79 +370,4 @@ fn pump_edges(run: &ReadyRun, traces: [Arc<Trace>; 2]) -> Vec<bool> {
             on != 0 && on != number
         })
         .collect()
-}
-
-/// Mask of the samples at which the hitch rests against a stop, measured or simulated: pressure and flow then depend on
-/// the stop's stiffness and the impact. The true simulated angle is used, not the reading of a sensor.
-fn at_a_stop(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
-    let (low_rad, high_rad) = model.linkage().swing_rad();
-    let stops_deg = [low_rad.to_degrees(), high_rad.to_degrees()];
-    let touches = |angle_deg: f64| {
-        stops_deg
-            .iter()
-            .any(|stop_deg| (angle_deg - stop_deg).abs() < AT_A_STOP_DEG)
-    };
-    let measured = run.measured[Channel::RockerAngle.index()].as_ref();
-    let mut left_s = f64::NEG_INFINITY;
-    (0..run.len())
-        .map(|sample| {
-            let simulated = |trace: &&Trace| touches(trace.true_angle_deg[sample]);
-            if measured.is_some_and(|angle_deg| touches(angle_deg[sample]))
-                || traces.iter().any(simulated)
-            {
-                left_s = run.drive.time_s[sample];
-            }
-            run.drive.time_s[sample] - left_s <= AFTER_A_STOP_S
-        })
-        .collect()
-}
-
-/// Standard deviation of the angle's random walk per sample, degree.
-fn walk_steps_deg(
-    experiment: &Experiment,
-    run: &ReadyRun,
-    model: &Model,
-    [below, above]: [&Trace; 2],
-) -> Vec<f64> {
-    let area_m2 = model.constants().cylinder.area_m2();
-    let linkage = model.linkage();
-    let time_s = &run.drive.time_s;
-    let noise = experiment.current_noise;
-    let stops = at_a_stop(run, model, [below, above]);
-    (0..run.len())
-        .map(|sample| {
-            if sample == 0 {
-                return 0.0;
-            }
-            let flow_lpm = 0.5
-                * (above.channel(Channel::Flow)[sample] - below.channel(Channel::Flow)[sample])
-                    .abs();
-            if flow_lpm == 0.0 {
-                return 0.0;
-            }
-            if stops[sample] {
-                return AT_A_STOP_DEG;
-            }
-            let share = active(noise, run.drive.currents[sample])
-                / active(run.drive.spread[sample], run.drive.currents[sample]);
-            let angle_deg = above.channel(Channel::RockerAngle)[sample];
-            let travel_m = units::m3_s_from_lpm(flow_lpm * share) / area_m2
-                * (time_s[sample] - time_s[sample - 1]);
-            // Variances of independent steps add up.
-            travel_m / run.averaged[sample].sqrt()
-                * linkage
-                    .angle_slope_rad_m(angle_deg.to_radians())
-                    .to_degrees()
-        })
-        .map(|step| step * experiment.current_persistence.sqrt())
-        .collect()
-}
-
-/// The value of the valve that is driven.
-fn active(values: Currents, currents: Currents) -> f64 {
-    if currents.lift_a > currents.lower_a {
-        values.lift_a
-    } else {
-        values.lower_a
-    }
 }
