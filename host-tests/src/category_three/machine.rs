@@ -7,7 +7,9 @@ pub const LPM: f64 = 1e-3 / 60.0;
 /// Standard gravity, m/s2.
 pub const GRAVITY_M_S2: f64 = 9.806_65;
 
-/// Area of two cylinders of 90 mm, m2.
+/// Bore of each of the two cylinders, mm.
+pub const BORE_MM: f64 = 90.0;
+/// Area of both, m2.
 pub const AREA_M2: f64 = 2.0 * std::f64::consts::PI * 0.045 * 0.045;
 /// Stroke, m.
 pub const STROKE_M: f64 = 0.2;
@@ -20,8 +22,10 @@ pub const PISTON_KG: f64 = 40.0;
 /// Viscous friction at the pistons, N s/m.
 pub const VISCOUS_N_S_M: f64 = 30_000.0;
 
-/// Net flow of the pump at full displacement, m3/s: 45 cm3 at 2200 rev/min and 93 %.
-pub const PUMP_M3_S: f64 = 99.0 * 0.93 * LPM;
+/// Displacement times speed of the pump, l/min: 45 cm3 at 2200 rev/min.
+pub const PUMP_FLOW_LPM: f64 = 99.0;
+/// Net flow at full displacement, m3/s, at a volumetric efficiency of 93 %.
+pub const PUMP_M3_S: f64 = PUMP_FLOW_LPM * 0.93 * LPM;
 /// Pump pressure without a request, Pa.
 pub const STANDBY_PA: f64 = 22.0 * BAR;
 /// Pressure limiter of the pump, Pa.

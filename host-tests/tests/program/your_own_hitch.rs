@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use host_tests::category_three::files::write;
 use host_tests::category_three::machine::{
-    BAR, DEAD_WEIGHT_KG, MARGIN_PA, PUMP_RESPONSE_S, WORN_LPM_BAR,
+    BAR, BORE_MM, BULK_MODULUS_PA, DEAD_WEIGHT_KG, MARGIN_PA, PUMP_FLOW_LPM, PUMP_RESPONSE_S,
+    VISCOUS_N_S_M, WORN_LPM_BAR,
 };
 use host_tests::program::run;
 
@@ -88,9 +89,13 @@ fn the_documents_commands_find_what_is_hidden_in_a_second_machine() {
     let leakage = value(&explained, "conductance_lpm_per_bar");
     assert!((leakage / WORN_LPM_BAR - 1.0).abs() < 0.05, "{leakage}");
     for (key, machine, tolerance) in [
-        ("margin_bar", MARGIN_PA / BAR, 0.02),
-        ("response_time_ms", 1e3 * PUMP_RESPONSE_S, 0.1),
-        ("dead_weight_kg", DEAD_WEIGHT_KG, 0.05),
+        ("theoretical_flow_lpm", PUMP_FLOW_LPM, 0.01),
+        ("bore_mm", BORE_MM, 0.005),
+        ("margin_bar", MARGIN_PA / BAR, 0.005),
+        ("response_time_ms", 1e3 * PUMP_RESPONSE_S, 0.01),
+        ("bulk_modulus_pa", BULK_MODULUS_PA, 0.005),
+        ("viscous_friction_n_s_m", VISCOUS_N_S_M, 0.01),
+        ("dead_weight_kg", DEAD_WEIGHT_KG, 0.02),
     ] {
         let found = value(&fitted, key);
         assert!((found / machine - 1.0).abs() < tolerance, "{key}: {found}");
