@@ -5,7 +5,8 @@ interface State extends ErrorMap<Cell, MeasuredChannel> {
   campaign: string;
   description: string;
   model: string;
-  runs: { file: string; conditions: string }[];
+  /** Each with its error in sigma. */
+  runs: { file: string; conditions: string; error: number | null }[];
   /** Error of all channels, sigma. */
   error: number;
   second: SecondModel | null;
