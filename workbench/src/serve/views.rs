@@ -18,6 +18,7 @@ use crate::comparison::{Comparison, Evaluated, Grouping};
 use crate::error::Error;
 use crate::explanation::rebuilt;
 use crate::report::run_views::conditions;
+use crate::words;
 
 pub use effects::tried;
 
@@ -44,7 +45,8 @@ pub fn state(session: &Session) -> Value {
     json!({
         "campaign": subject.experiment().name,
         "description": subject.description,
-        "model": subject.model.name,
+        "model": words::named(&subject.model),
+        "words": words::ALL,
         "runs": runs(evaluated),
         "channels": channels(evaluated),
         "error": comparison.error,

@@ -5,7 +5,7 @@ import { byId, element, painted, sigmas } from "./dom.js";
 import { worstCell } from "./error_map.js";
 import { faultLines } from "./fault.js";
 import { connectFiles } from "./files.js";
-import { drawMissing, drawRanking, insert } from "./missing.js";
+import { drawMissing, drawRanking, insert, meaning } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
 import { endOverlay, isOverlaid, openOverlay, overlayBox, previewOverlay, refreshOverlay } from "./overlay.js";
 import { openForm } from "./own_term.js";
@@ -109,6 +109,8 @@ function draw() {
   byId("subtitle").textContent = [state.description, `model ${state.model}`,
     `${state.runs.length} ${state.runs.length === 1 ? "run" : "runs"}`].filter(Boolean).join(" · ");
   document.title = `${state.campaign} – hitch`;
+  byId("title").title = meaning(state, "σ");
+  byId("words").replaceChildren(...state.words.flatMap(({ term, means }) => [element("dt", {}, term), element("dd", {}, means)]));
   drawCompared(state, visits);
   drawModel(state, acts);
   drawMissing(state, { ...acts, signed: signed?.name });
@@ -205,7 +207,7 @@ function hear(message) {
     tried = insert(tried, message.candidate);
     fraction(message.fraction);
     byId("job-text").textContent = `${byId("job").dataset.title}: ${message.candidate.effect.title}`;
-    drawRanking(tried, { ...acts, signed: "" });
+    drawRanking(tried, { ...acts, signed: "" }, state);
   } else {
     showJob(null);
     if (message.kind === "failed") say(message.text);

@@ -114,7 +114,7 @@ function slider(added, parameter, where, acts) {
     checked: parameter.fixed, "aria-label": `Fix ${parameter.name} of ${added.effect.title} in fits`,
     onchange: () => acts.run({ task: "fix", ...where, fixed: fix.checked }) });
   return element("div", { class: "fixable" },
-    element("label", { class: "parameter" }, element("span", {}, parameter.name), input, output),
+    element("label", { class: "parameter" }, element("span", {}, `${parameter.name}: `, element("small", {}, parameter.meaning)), input, output),
     element("label", { class: "fix", title: "A fixed parameter keeps its value in fits" }, fix, " fixed"));
 }
 

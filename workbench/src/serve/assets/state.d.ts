@@ -4,7 +4,10 @@
 interface State extends ErrorMap<Cell, MeasuredChannel> {
   campaign: string;
   description: string;
+  /** Name and kind of the first model. */
   model: string;
+  /** What the terms of results mean. */
+  words: { term: string; means: string }[];
   /** Each with its error in sigma. */
   runs: { file: string; conditions: string; error: number | null }[];
   /** Error of all channels, sigma. */
@@ -63,6 +66,7 @@ interface Effect {
   equation: string;
   shows: string;
   source: string;
+  parameters: { name: string; meaning: string }[];
 }
 
 interface AddedEffect {
