@@ -23,7 +23,7 @@ def angle_deg(page: Page) -> float:
 def watch(page: Page, pictures: Path, view: str) -> None:
     """The page shows a hitch that moves, and offers no control of it."""
     page.wait_for_selector("#views[data-ready]")
-    page.locator("#loop").scroll_into_view_if_needed()
+    page.click("#tab-loop")
     expect(page.locator("#loop-bus")).to_contain_text("listen-only mode")
     expect(page.locator("#loop-start")).to_have_text("Pause")
     for control in CONTROLS:

@@ -37,7 +37,7 @@ def open_log(page: Page, log: Path, pictures: Path, view: str) -> None:
     page.click("#files-open")
     expect(page.locator("#title")).to_contain_text(log.stem)
     expect(page.locator("#files-form")).to_be_hidden()
-    expect(page.locator("#run option")).to_have_count(1)
+    expect(page.locator("#run .run")).to_have_count(1)
     heads = page.locator("#cells thead th").all_inner_texts()
     assert "rocker angle" in heads and "flow" not in heads, heads
     page.wait_for_timeout(300)

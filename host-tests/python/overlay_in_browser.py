@@ -61,7 +61,7 @@ def overlay(page: Page, pictures: Path, view: str) -> None:
     """Ticks two runs, and takes one away."""
     page.wait_for_selector("#views[data-ready]")
     page.locator("#overlay summary").press("Enter")
-    boxes = page.locator("#overlay-runs input")
+    boxes = page.locator("#run input[type=checkbox]")
     boxes.nth(0).press("Space")
     shown(page, 1)
     one = hues(page)
@@ -74,14 +74,14 @@ def overlay(page: Page, pictures: Path, view: str) -> None:
     assert not hues(page) & one, "the legend switches a run off"
     page.click("#overlay-all")
     shown(page, boxes.count())
-    expect(page.locator("#plot")).to_be_hidden()
+    expect(page.locator("#plot-view")).to_be_hidden()
     page.locator("#runs").screenshot(path=pictures / f"overlay_{view}.png")
     assert_fits(page)
     assert_accessible(page)
     # A cell shows one run again.
     page.locator("#cells td button").first.click()
     expect(page.locator("#overlay-view")).to_be_hidden()
-    expect(page.locator("#overlay-runs input:checked")).to_have_count(0)
+    expect(page.locator("#run input[type=checkbox]:checked")).to_have_count(0)
     width = page.evaluate("document.querySelector('#plot .main-svg').clientWidth - document.getElementById('plot').clientWidth")
     assert abs(width) <= 1, f"the plot is {width} px wider than its place"
 
@@ -142,7 +142,7 @@ def measure(page: Page, pictures: Path) -> None:
     page.wait_for_selector("#views[data-ready]")
     page.locator("#overlay summary").press("Enter")
     page.click("#overlay-all")
-    boxes = page.locator("#overlay-runs input")
+    boxes = page.locator("#run input[type=checkbox]")
     runs = boxes.count()
     shown(page, runs)
     zoom(page)

@@ -79,6 +79,7 @@ def whole_story(page: Page, pictures: Path) -> None:
     cells.nth(errors.index(max(errors))).click()
     expect(page.locator("#place")).to_contain_text("Worst for")
 
+    page.click("#tab-missing")
     began_s = time.monotonic()
     page.click("#rank")
     page.wait_for_selector("#ranking .effect")
@@ -93,7 +94,6 @@ def whole_story(page: Page, pictures: Path) -> None:
     expect(best.locator("button.sign")).to_have_attribute("aria-pressed", "true")
     expect(page.locator("#place")).to_contain_text("Signature")
     page.wait_for_function("document.getElementById('plot').data.some((line) => line.legendgroup === 'signature')")
-    page.evaluate("scrollTo(0, document.getElementById('missing').offsetTop - 20)")
     page.wait_for_timeout(300)
     page.screenshot(path=pictures / "signature.png")
     assert_accessible(page)
@@ -144,6 +144,8 @@ def drag(page: Page) -> None:
 
 def own_term(page: Page, pictures: Path) -> None:
     """Writes a term, first with a fault, and adds it."""
+    page.click("#tab-missing")
+    page.locator("#own > summary").press("Enter")
     page.fill("#term-id", "shift")
     page.select_option("#term-place", "lower-current")
     row = page.locator("#term-rows .term-row").first
@@ -151,7 +153,7 @@ def own_term(page: Page, pictures: Path) -> None:
         row.locator(f"[data-key={key}]").fill(value)
     page.fill("#term-formula", "c * oops")
     expect(page.locator("#term-fault")).to_contain_text("Column 5")
-    page.locator("#own").scroll_into_view_if_needed()
+    page.locator("#term").scroll_into_view_if_needed()
     page.screenshot(path=pictures / "own_term_wrong.png")
     assert_accessible(page)
     page.fill("#term-formula", "c")
@@ -171,6 +173,7 @@ def own_term(page: Page, pictures: Path) -> None:
 
 def automatic(page: Page, pictures: Path) -> None:
     """Explains, cancelled at first, and takes the steps over."""
+    page.click("#tab-missing")
     page.click("#explain")
     page.click("#cancel")
     expect(page.get_by_text("Verdict: ")).to_be_visible(timeout=30_000)
@@ -220,20 +223,24 @@ def both_in(page: Page, state: str) -> None:
 
 
 def assert_charts(page: Page) -> None:
-    """The strip charts follow the simulation, and no other panel covers them."""
+    """The strip charts follow the simulation, and nothing covers them."""
     drawn = page.evaluate(
         "[...document.querySelectorAll('#loop-chart .scatterlayer path.js-line')].map((path) => path.getBBox().width)"
     )
     axis = page.evaluate("document.querySelector('#loop-chart .gridlayer').getBBox().width")
     assert max(drawn) > 0.1 * axis, (drawn, axis)
-    loop, runs = (page.locator(name).bounding_box() for name in ("#loop", "#runs"))
-    assert runs["y"] + runs["height"] <= loop["y"], (runs, loop)
+    page.locator("#loop-chart").scroll_into_view_if_needed()
+    box = page.locator("#loop-chart .nsewdrag").first.bounding_box()
+    top = "([x, y]) => Boolean(document.elementFromPoint(x, y)?.closest('#loop-chart'))"
+    assert page.evaluate(top, [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2]), box
 
 
 def drive(page: Page, pictures: Path, view: str) -> None:
     """Drives the closed loop: the hitch follows the lever, and a broken sensor is a fault."""
-    page.locator("#loop").scroll_into_view_if_needed()
+    page.click("#tab-loop")
     page.wait_for_selector("#loop[data-ready]")
+    expect(page.locator("#valve-map .main-svg").first).to_be_visible()
+    expect(page.locator("#loop-chart")).to_be_hidden()
     page.click("#loop-start")
     expect(page.locator("#loop-start")).to_have_text("Pause")
     lever = page.locator("#loop-lever")

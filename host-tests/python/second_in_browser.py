@@ -64,11 +64,13 @@ def compare_step(page: Page) -> None:
     """An earlier step; it is that of before when the model is changed, until the comparison is closed."""
     page.select_option("#second", "0")
     expect(page.locator("#second-text")).to_have_text("Both are the same model.")
+    page.click("#tab-missing")
     page.click("#rank")
     page.wait_for_selector("#ranking .effect")
     expect(page.locator("#job")).to_be_hidden()
     page.locator("#ranking .effect button.add").first.click()
     page.wait_for_selector("#effects .effect")
+    page.click("#tab-map")
     expect(page.locator("#second option:checked")).to_contain_text("step 0")
     expect(page.locator("#second-channels tbody tr").last.locator("td").last).to_contain_text("▼")
     page.click("#second-close")

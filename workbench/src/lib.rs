@@ -34,4 +34,5 @@ pub mod text;
 pub mod tuning;
 pub mod valve_survey;
 pub mod web;
+pub mod words;
 pub mod xcp_tool;

@@ -121,6 +121,7 @@ const CRATES: [Layers; 9] = [
                 "input_stream",
                 "heat_table",
                 "web",
+                "words",
             ],
             &["demonstration", "valve_survey", "base_fit", "next_command"],
             &[

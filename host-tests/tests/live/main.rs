@@ -16,6 +16,7 @@ mod emulated;
 mod emulated_ecu;
 mod files_in_browser;
 mod fixed_parameter;
+mod instrument_in_browser;
 mod overlay_in_browser;
 mod page_in_browser;
 mod panics;

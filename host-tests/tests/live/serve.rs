@@ -120,6 +120,19 @@ fn a_session_adds_undoes_and_saves_beside_another() {
         server.post("api/preview", &body).json()["channels"].clone()
     };
     assert!(trial(shift) != trial(shift + 0.1), "nothing moved");
+    let all = |value: f64| {
+        let body = json!({ "session": one, "effect": 0, "parameter": 0, "value": value });
+        server.post("api/preview/all", &body).json()
+    };
+    let (same, moved) = (all(shift), all(shift + 0.1));
+    assert!((error(&same) - error(&after)).abs() < 1e-9 && error(&moved) > error(&same));
+    for (index, run) in runs.iter().enumerate() {
+        let [listed, tried] =
+            [&run["error"], &same["runs"][index]].map(|one| one.as_f64().unwrap());
+        assert!((listed - tried).abs() < 1e-9, "{run}: {tried}");
+    }
+    let (was, is) = (&same["runs"][run], &moved["runs"][run]);
+    assert!(is.as_f64().unwrap() > was.as_f64().unwrap(), "{was} {is}");
 
     let saved = server.get(&format!("api/model?session={one}"));
     assert!(saved.head.contains("attachment; filename=\"model.toml\""));

@@ -268,12 +268,20 @@ fn unit_faults_name_the_part_its_units_and_a_way_out() {
         ),
         (
             "k * (x - 3) / d",
-            "17: `x - 3`: left is a length (m), right a pure number; give the number a unit: 3[m]",
+            "17: `x - 3`: left is a length (m), right a pure number; give the number a unit: 3[mm]",
         ),
         (
             "k * max(v, 0) / d",
             "16: `max(v, 0)`: one argument is a speed (m/s), another a pure number; give the number a \
-             unit: 0[m/s]",
+             unit: 0[mm/s]",
+        ),
+        (
+            "k * ramp(1 - p_cyl/20)",
+            "21: `1 - p_cyl/20`: left is a pure number, right a pressure (Pa); give the number a unit: 20[bar]",
+        ),
+        (
+            "k * (q_lift*p_cyl - 5)",
+            "17: `q_lift*p_cyl - 5`: left is a power (W), right a pure number; give the number a unit: 5[W]",
         ),
         (
             "k * clamp(x / d, 0, 1[mm])",

@@ -135,6 +135,43 @@ impl Evaluated {
         tally.rms()
     }
 
+    /// Every cell of every grouping that has samples.
+    pub fn cells(&self) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        for by in Grouping::ALL {
+            for channel in Channel::ALL {
+                let mut parts: Vec<(groups::Part, Tally)> = Vec::new();
+                for (index, run) in self.experiment.runs.iter().enumerate() {
+                    for (sample, residual) in self.residuals(index, channel).into_iter().enumerate()
+                    {
+                        let part = by.part(&self.groups, run, sample);
+                        tally(&mut parts, part, residual);
+                    }
+                }
+                parts.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
+                cells.extend(parts.into_iter().map(|(part, tally)| Cell {
+                    by,
+                    part: part.name,
+                    channel: channel.key(),
+                    error: tally.rms(),
+                    bias: tally.mean(),
+                    samples: tally.samples,
+                }));
+            }
+        }
+        cells
+    }
+
+    /// Error of a run in sigma, each measured channel weighted alike; NaN if nothing of it is compared.
+    pub fn run_error(&self, run: usize) -> f64 {
+        let errors = Channel::ALL.map(|channel| self.error(run, channel));
+        let compared = errors.into_iter().filter(|error| error.is_finite());
+        let (squares, channels) = compared.fold((0.0, 0.0), |(squares, channels), error| {
+            (squares + error * error, channels + 1.0)
+        });
+        f64::sqrt(squares / channels)
+    }
+
     /// Simulated samples of every channel of a run, in the channels' units.
     pub fn simulated(&self, model: &Model, run: usize) -> Trace {
         raw_error::simulated(&self.experiment, &self.fit, model, run)
@@ -157,7 +194,7 @@ impl Comparison {
             error: sums.error(),
             noise_floor: 1.0,
             channels: channels(evaluated, model, &sums),
-            cells: cells(evaluated),
+            cells: evaluated.cells(),
             worst: Channel::ALL
                 .into_iter()
                 .filter_map(|channel| worst::worst(evaluated, channel))
@@ -180,33 +217,6 @@ fn channels(evaluated: &Evaluated, model: &Model, sums: &ErrorSums) -> Vec<Chann
         })
     };
     Channel::ALL.into_iter().filter_map(of).collect()
-}
-
-fn cells(evaluated: &Evaluated) -> Vec<Cell> {
-    let mut cells = Vec::new();
-    for by in Grouping::ALL {
-        for channel in Channel::ALL {
-            let mut parts: Vec<(groups::Part, Tally)> = Vec::new();
-            for (index, run) in evaluated.experiment.runs.iter().enumerate() {
-                for (sample, residual) in
-                    evaluated.residuals(index, channel).into_iter().enumerate()
-                {
-                    let part = by.part(&evaluated.groups, run, sample);
-                    tally(&mut parts, part, residual);
-                }
-            }
-            parts.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
-            cells.extend(parts.into_iter().map(|(part, tally)| Cell {
-                by,
-                part: part.name,
-                channel: channel.key(),
-                error: tally.rms(),
-                bias: tally.mean(),
-                samples: tally.samples,
-            }));
-        }
-    }
-    cells
 }
 
 fn tally(parts: &mut Vec<(groups::Part, Tally)>, part: Option<groups::Part>, residual: f64) {

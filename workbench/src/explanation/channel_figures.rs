@@ -89,10 +89,14 @@ impl ChannelFigures {
         let is_effect = |name: &&&str| ![SUM, CLOCK].contains(*name);
         parts.keys().find(is_effect)?;
         let named = parts.iter().filter(|(name, _)| **name != SUM);
+        let said = |name: &'static str| match name {
+            CLOCK => "clock of the log",
+            other => other,
+        };
         let terms: Vec<String> = named
-            .map(|(name, part_s)| format!("{name} {:.0}", 1e3 * part_s))
+            .map(|(name, part_s)| format!("{}: {:+.0}", said(name), 1e3 * part_s))
             .collect();
         let sum_ms = 1e3 * parts.get(SUM).copied().unwrap_or(f64::NAN);
-        Some(format!("{sum_ms:.0} ms ({})", terms.join(" + ")))
+        Some(format!("{sum_ms:.0} ms ({})", terms.join(", ")))
     }
 }

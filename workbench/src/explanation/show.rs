@@ -11,6 +11,7 @@ use super::{
 };
 use crate::text::colour::{self, by_sigma};
 use crate::text::{Table, indented, known, wrapped};
+use crate::words;
 
 /// Indentation of the details of a step, characters.
 const DETAIL: usize = 5;
@@ -90,7 +91,7 @@ impl fmt::Display for Alternative {
         } = self;
         write!(
             f,
-            "{effect} ({angle_deg:.1} degrees apart on this campaign)"
+            "{effect} (angle {angle_deg:.1} deg on this campaign; 0 deg: alike)"
         )
     }
 }
@@ -169,6 +170,8 @@ impl fmt::Display for Diagnosis {
             }
         }
         writeln!(f, "{table}")?;
+        let terms = words::sentences(&[words::CONFIDENCE, words::DETECTABILITY]);
+        writeln!(f, "{}", wrapped(&terms))?;
         for candidate in self
             .candidates
             .iter()

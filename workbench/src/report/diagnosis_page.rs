@@ -18,6 +18,7 @@ use super::staircase::staircase;
 use super::{page, staircase};
 use crate::comparison::Evaluated;
 use crate::explanation::{Candidate, Diagnosis, HOPELESS_BASE};
+use crate::words;
 
 /// Number of candidates that are shown as bars, and in the unfolded table.
 const BARS: usize = 8;
@@ -120,7 +121,6 @@ fn candidates(candidates: &[Candidate]) -> Markup {
         @if !others.is_empty() {
             details { summary { (others.len()) " other effects" } (page::table(&header, others)) }
         }
-        p.note { "Explains: share of the squared error above the noise. Confidence: probability among the single effects and \
-                 none. Detectability: root mean square, in sigma, of the signature, all other effects projected out." }
+        p.note { (words::sentences(&[words::EXPLAINS, words::CONFIDENCE, words::DETECTABILITY, words::SIGMA])) }
     }
 }

@@ -15,6 +15,7 @@ use crate::base_fit::ShownConstant;
 use crate::comparison::Evaluated;
 use crate::explanation::{ChannelFigures, Corrected, Explanation, Found, Head, Step};
 use crate::text::known;
+use crate::words;
 
 /// The report as one HTML document.
 pub fn page(found: &Found) -> String {
@@ -162,8 +163,7 @@ fn steps(steps: &[Step]) -> Markup {
     let rows: Vec<Vec<String>> = steps.iter().map(row).collect();
     html! {
         (page::table(&header, &rows))
-        p.note { "Held-out: error on runs not used for the fit. Detectability: root mean square, in sigma, of the signature, \
-                 all other effects projected out." }
+        p.note { (words::sentences(&[words::HELD_OUT, words::CONFIDENCE, words::DETECTABILITY, words::ANGLE, words::SIGMA])) }
     }
 }
 

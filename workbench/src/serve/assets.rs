@@ -29,10 +29,14 @@ const FILES: &[(&str, &str, &str)] = &[
     ("second.js", SCRIPT, include_str!("assets/second.js")),
     ("overlay.js", SCRIPT, include_str!("assets/overlay.js")),
     (
-        "overlay_cursor.js",
+        "plot_cursor.js",
         SCRIPT,
-        include_str!("assets/overlay_cursor.js"),
+        include_str!("assets/plot_cursor.js"),
     ),
+    ("run_list.js", SCRIPT, include_str!("assets/run_list.js")),
+    ("signals.js", SCRIPT, include_str!("assets/signals.js")),
+    ("tabs.js", SCRIPT, include_str!("assets/tabs.js")),
+    ("trial.js", SCRIPT, include_str!("assets/trial.js")),
     ("mapping.js", SCRIPT, include_str!("assets/mapping.js")),
     ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
     (

@@ -8,6 +8,7 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
+use hitch_identification::estimate::Estimate;
 use hitch_plant::Channel;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -16,8 +17,9 @@ use tokio_stream::{Stream, StreamExt};
 
 use super::own_term::TermForm;
 use super::parameters::moved;
-use super::session::Session;
+use super::session::{Session, Step};
 use super::sessions::{Sessions, Shared};
+use super::source::Subject;
 use super::tasks::Task;
 use super::{assets, jobs, live, own_term, second, upload, views};
 use crate::comparison::{Grouping, worst_in_part};
@@ -41,6 +43,7 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/formulas", get(formulas))
         .route("/{token}/api/check", post(check))
         .route("/{token}/api/preview", post(preview))
+        .route("/{token}/api/preview/all", post(preview_all))
         .route("/{token}/api/start", post(start))
         .route("/{token}/api/cancel", post(cancel))
         .route("/{token}/api/go", post(go))
@@ -202,30 +205,54 @@ async fn signature(State(sessions): Known, Query(of): Query<OfCandidate>) -> Ans
     Ok(Json(view.await?.ok_or_else(none)?))
 }
 
-/// A parameter of an effect set by hand, and the run to redraw with it.
+/// A run to redraw with a parameter set by hand.
+#[derive(Debug, Deserialize)]
+struct TrialOfRun {
+    run: usize,
+    #[serde(flatten)]
+    trial: Trial,
+}
+
+/// A parameter of an effect set by hand.
 #[derive(Debug, Deserialize)]
 struct Trial {
     session: String,
-    run: usize,
     effect: usize,
     parameter: usize,
     value: f64,
 }
 
-async fn preview(State(sessions): Known, Json(trial): Json<Trial>) -> Answer {
-    let session = find(&sessions, &trial.session)?;
-    let (subject, step) = {
+impl Trial {
+    /// The model of the trial: the campaign, the present step, and its estimate with the parameter set.
+    fn applied(&self, sessions: &Sessions) -> Result<(Arc<Subject>, Step, Estimate), Refusal> {
+        let session = find(sessions, &self.session)?;
         let session = lock(&session);
-        (Arc::clone(session.subject()), session.present().clone())
-    };
-    let view = blocking(move || {
+        let step = session.present().clone();
         let estimate = &step.evaluated.fit.estimate;
-        let estimate = moved(estimate, trial.effect, trial.parameter, trial.value)?;
-        views::preview(&subject, &step, &estimate, trial.run)
-    });
-    let none =
-        || Refusal::conflict("the parameter is no longer in the model, or the run does not exist");
+        let estimate = moved(estimate, self.effect, self.parameter, self.value);
+        let gone = || Refusal::conflict("the parameter is no longer in the model");
+        Ok((
+            Arc::clone(session.subject()),
+            step,
+            estimate.ok_or_else(gone)?,
+        ))
+    }
+}
+
+async fn preview(
+    State(sessions): Known,
+    Json(TrialOfRun { run, trial }): Json<TrialOfRun>,
+) -> Answer {
+    let (subject, step, estimate) = trial.applied(&sessions)?;
+    let view = blocking(move || views::preview(&subject, &step, &estimate, run));
+    let none = || Refusal::conflict("the run does not exist");
     Ok(Json(view.await?.ok_or_else(none)?))
+}
+
+async fn preview_all(State(sessions): Known, Json(trial): Json<Trial>) -> Answer {
+    let (subject, step, estimate) = trial.applied(&sessions)?;
+    let view = blocking(move || views::preview_all(&subject, &step, estimate));
+    Ok(Json(view.await?))
 }
 
 async fn formulas() -> Json<Value> {

@@ -2,8 +2,12 @@
 mod effects;
 mod second;
 
-use hitch_identification::data::experiment::{Experiment, ReadyRun};
+use std::sync::Arc;
+
+use hitch_identification::data::experiment::ReadyRun;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
+use hitch_identification::estimation::fit::evaluate_weighted;
 use hitch_plant::simulation::Trace;
 use hitch_plant::{AddedEffect, Channel, Parameter};
 use serde_json::{Value, json};
@@ -14,6 +18,7 @@ use crate::comparison::{Comparison, Evaluated, Grouping};
 use crate::error::Error;
 use crate::explanation::rebuilt;
 use crate::report::run_views::conditions;
+use crate::words;
 
 pub use effects::tried;
 
@@ -40,8 +45,9 @@ pub fn state(session: &Session) -> Value {
     json!({
         "campaign": subject.experiment().name,
         "description": subject.description,
-        "model": subject.model.name,
-        "runs": runs(subject.experiment()),
+        "model": words::named(&subject.model),
+        "words": words::ALL,
+        "runs": runs(evaluated),
         "channels": channels(evaluated),
         "error": comparison.error,
         "noise_floor": comparison.noise_floor,
@@ -57,14 +63,16 @@ pub fn state(session: &Session) -> Value {
     })
 }
 
-fn runs(experiment: &Experiment) -> Vec<Value> {
-    let run = |run: &ReadyRun| {
+fn runs(evaluated: &Evaluated) -> Vec<Value> {
+    let run = |(index, run): (usize, &ReadyRun)| {
         json!({
             "file": run.file,
             "conditions": conditions(run),
+            "error": evaluated.run_error(index),
         })
     };
-    experiment.runs.iter().map(run).collect()
+    let runs = evaluated.experiment.runs.iter();
+    runs.enumerate().map(run).collect()
 }
 
 fn channels(evaluated: &Evaluated) -> Vec<Value> {
@@ -140,6 +148,21 @@ pub fn preview(subject: &Subject, step: &Step, estimate: &Estimate, run: usize) 
     };
     let channels = Channel::ALL.into_iter().filter_map(channel);
     Some(json!({ "run": run, "channels": channels.collect::<Vec<_>>() }))
+}
+
+/// Errors of all runs with manually set parameters, with the weights of the step: in total, by channel, by run, and by cell.
+pub fn preview_all(subject: &Subject, step: &Step, estimate: Estimate) -> Value {
+    let (experiment, model) = (subject.experiment(), &subject.model);
+    let weights = step.evaluated.fit.weights.clone();
+    let fit = evaluate_weighted(Problem::new(experiment, model), estimate, weights);
+    let evaluated = Evaluated::fitted(Arc::clone(&step.evaluated.experiment), fit, model);
+    let runs = 0..experiment.runs.len();
+    json!({
+        "error": evaluated.fit.error(),
+        "channels": channels(&evaluated),
+        "runs": runs.map(|run| evaluated.run_error(run)).collect::<Vec<_>>(),
+        "cells": evaluated.cells(),
+    })
 }
 
 /// The part of a run's residuals that a candidate explains at its fitted size: residual without it minus residual with

@@ -74,7 +74,7 @@ mod tests {
         assert_eq!(remaining, None);
         assert!(
             joined
-                .contains("return { library, loadLibrary, drawRun, redrawRun, frame, ordinate };")
+                .contains("return { library, loadLibrary, drawRun, redrawRun, zoomRun, readable, sampleAt, frame, ordinate };")
         );
     }
 }

@@ -36,6 +36,13 @@ export function number(value, digits = 3) {
   return size >= 10 ** digits ? value.toFixed(0) : Number(value.toPrecision(digits)).toString();
 }
 
+/** A name of a file, which may be wrapped after its separators only.
+ * @param {string} name
+ * @returns {(string | Node)[]} */
+export function breakable(name) {
+  return name.split(/(?<=[_\-/ ])/).flatMap((part) => [part, element("wbr")]);
+}
+
 /** An error in sigma.
  * @param {number | null} value */
 export function sigmas(value) {
@@ -46,6 +53,12 @@ export function sigmas(value) {
  * @param {string} name */
 export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+/** Whether the page is an instrument that fills the window; else, it is one column. The style sheet has the same condition.
+ * @returns {boolean} */
+export function isWide() {
+  return matchMedia("(min-width: 64rem) and (min-height: 34rem)").matches;
 }
 
 /** Waits until the changes of the page are on the screen; not in a hidden tab, which is not painted.

@@ -19,14 +19,14 @@ interface PlotLayout {
 /** An element with a plot. */
 interface Plotted extends HTMLElement {
   /** Absent before the first drawing. */
-  layout?: { xaxis: { range: [number, number] } };
+  layout?: { xaxis: { range: [number, number] }; margin: { l: number; r: number }; [axis: string]: any };
   data?: PlotTrace[];
   on(event: string, listener: (change: Record<string, number | undefined>) => void): void;
 }
 
 interface Plotly {
   react(at: HTMLElement, traces: PlotTrace[], layout: object, options: object): Promise<void>;
-  animate(at: HTMLElement, frame: object, options: object): Promise<void>;
+  relayout(at: HTMLElement, change: object): Promise<void>;
   Plots: { resize(at: HTMLElement): Promise<void> };
 }
 

@@ -65,6 +65,8 @@ interface PlotView {
   rows?: PlotRow[];
   span?: [number, number];
   x_title?: string;
+  /** Parts that are not drawn: residuals, currents. */
+  without?: string[];
 }
 
 /** A run on the page. */

@@ -79,13 +79,19 @@ impl Checker<'_> {
         }
     }
 
-    /// A correction that makes the units of two sides agree.
+    /// A correction that makes the units of two sides agree. Beside a pure number, a quantity over a plain number is meant as their
+    /// ratio, so the divisor lacks the unit; without such a divisor, the number itself.
     fn reconcile(&self, sides: &[Node; 2], dimensions: [Dimension; 2]) -> String {
         for (side, other) in [(0, 1), (1, 0)] {
-            let node = &sides[side];
-            if matches!(node.kind, Kind::Number(_, dimension) if dimension.is_number()) {
+            let quantity = &sides[other];
+            let divisor = dimensions[side].is_number().then(|| divisor(quantity));
+            let lacking = divisor
+                .flatten()
+                .or(is_plain(&sides[side]).then_some(&sides[side]));
+            if let Some(node) = lacking {
                 let number = &self.text[node.span.clone()];
-                return format!("give the number a unit: {number}[{}]", dimensions[other]);
+                let unit = written_unit(quantity, dimensions[other]);
+                return format!("give the number a unit: {number}[{unit}]");
             }
         }
         let piece = shown(&self.text[sides[1].span.clone()]);
@@ -159,6 +165,41 @@ fn signal_dimension(signal: &Signal) -> Dimension {
         .dimension
 }
 
+/// Whether a node is a number literal without a unit.
+fn is_plain(node: &Node) -> bool {
+    matches!(node.kind, Kind::Number(_, dimension) if dimension.is_number())
+}
+
+/// The plain number that a quantity is divided by.
+fn divisor(node: &Node) -> Option<&Node> {
+    match &node.kind {
+        Kind::Binary(Binary::Divide, sides) if is_plain(&sides[1]) => Some(&sides[1]),
+        Kind::Unary(Unary::Negative | Unary::Abs | Unary::Ramp, inner) => divisor(inner),
+        _ => None,
+    }
+}
+
+/// The unit in which a number beside a quantity is written: that of its first signal of this dimension, else the SI unit.
+fn written_unit(node: &Node, dimension: Dimension) -> String {
+    signals(node)
+        .into_iter()
+        .find(|signal| signal_dimension(signal) == dimension)
+        .map_or_else(
+            || dimension.to_string(),
+            |signal| signal.written_unit.to_owned(),
+        )
+}
+
+/// The signals of a part of a formula, from left to right.
+fn signals(node: &Node) -> Vec<&'static Signal> {
+    match &node.kind {
+        Kind::Number(..) | Kind::Parameter(_) => Vec::new(),
+        Kind::Signal(signal) => vec![*signal],
+        Kind::Unary(_, inner) => signals(inner),
+        Kind::Binary(_, sides) => sides.iter().flat_map(signals).collect(),
+    }
+}
+
 /// The value of an exponent that consists of number literals only.
 fn written(node: &Node) -> Option<f64> {
     match &node.kind {
@@ -179,7 +220,8 @@ mod tests {
     #[test]
     fn every_signal_has_a_dimension() {
         for signal in &SIGNALS {
-            signal_dimension(signal);
+            let written = Unit::parse(signal.written_unit).map(|unit| unit.dimension);
+            assert_eq!(written, Ok(signal_dimension(signal)), "{}", signal.name);
         }
     }
 }

@@ -38,6 +38,8 @@ pub struct Signal {
     pub name: &'static str,
     /// Its SI unit; a temperature is in degree Celsius.
     pub unit: &'static str,
+    /// The unit in which logs and data sheets state such values; a number beside the signal is meant in it.
+    pub written_unit: &'static str,
     /// Description.
     pub meaning: &'static str,
     /// Smallest value that occurs on a rig, SI.
@@ -51,10 +53,11 @@ pub struct Signal {
 }
 
 macro_rules! signal {
-    ($name:literal, $unit:literal, $low:literal..=$high:literal, $field:ident, $meaning:literal) => {
+    ($name:literal, $unit:literal, $written:literal, $low:literal..=$high:literal, $field:ident, $meaning:literal) => {
         Signal {
             name: $name,
             unit: $unit,
+            written_unit: $written,
             meaning: $meaning,
             low: $low,
             high: $high,
@@ -67,19 +70,19 @@ macro_rules! signal {
 /// Every signal.
 #[rustfmt::skip]
 pub static SIGNALS: [Signal; 13] = [
-    signal!("x", "m", 0.0..=0.158, travel_m, "piston travel from the lower end"),
-    signal!("v", "m/s", -0.3..=0.3, speed_m_s, "piston speed, positive while lifting"),
-    signal!("rocker_angle", "rad", 0.7..=2.4, rocker_angle_rad, "angle of the rocker arm, a quarter turn where it points straight down"),
-    signal!("p_cyl", "Pa", 0.0..=200e5, cylinder_pressure_pa, "pressure at the cylinder"),
-    signal!("p_pump", "Pa", 0.0..=200e5, pump_pressure_pa, "pressure at the pump"),
-    signal!("i_lift", "A", 0.0..=3.5, lift_current_a, "effective current of the lift spool"),
-    signal!("i_lower", "A", 0.0..=3.5, lower_current_a, "effective current of the lowering spool"),
-    signal!("q_lift", "m3/s", 0.0..=1.2e-3, lift_flow_m3_s, "flow through the lift valve"),
-    signal!("q_lower", "m3/s", 0.0..=1.2e-3, lower_flow_m3_s, "flow through the lowering valve"),
-    signal!("load", "kg", 0.0..=500.0, load_kg, "load at the hitch point, without the dead weight"),
-    signal!("f_weight", "N", 0.0..=3e4, weight_n, "force of load and dead weight at the piston"),
-    signal!("t_oil", "degC", -20.0..=100.0, oil_temperature_c, "oil temperature, counted from 0 degree Celsius"),
-    signal!("nu", "m2/s", 5e-6..=1e-3, viscosity_m2_s, "kinematic viscosity of the oil"),
+    signal!("x", "m", "mm", 0.0..=0.158, travel_m, "piston travel from the lower end"),
+    signal!("v", "m/s", "mm/s", -0.3..=0.3, speed_m_s, "piston speed, positive while lifting"),
+    signal!("rocker_angle", "rad", "deg", 0.7..=2.4, rocker_angle_rad, "angle of the rocker arm, a quarter turn where it points straight down"),
+    signal!("p_cyl", "Pa", "bar", 0.0..=200e5, cylinder_pressure_pa, "pressure at the cylinder"),
+    signal!("p_pump", "Pa", "bar", 0.0..=200e5, pump_pressure_pa, "pressure at the pump"),
+    signal!("i_lift", "A", "A", 0.0..=3.5, lift_current_a, "effective current of the lift spool"),
+    signal!("i_lower", "A", "A", 0.0..=3.5, lower_current_a, "effective current of the lowering spool"),
+    signal!("q_lift", "m3/s", "l/min", 0.0..=1.2e-3, lift_flow_m3_s, "flow through the lift valve"),
+    signal!("q_lower", "m3/s", "l/min", 0.0..=1.2e-3, lower_flow_m3_s, "flow through the lowering valve"),
+    signal!("load", "kg", "kg", 0.0..=500.0, load_kg, "load at the hitch point, without the dead weight"),
+    signal!("f_weight", "N", "kN", 0.0..=3e4, weight_n, "force of load and dead weight at the piston"),
+    signal!("t_oil", "degC", "degC", -20.0..=100.0, oil_temperature_c, "oil temperature, counted from 0 degree Celsius"),
+    signal!("nu", "m2/s", "cSt", 5e-6..=1e-3, viscosity_m2_s, "kinematic viscosity of the oil"),
 ];
 
 #[cfg(test)]

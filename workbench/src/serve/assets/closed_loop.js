@@ -124,6 +124,7 @@ async function reopen() {
 async function start() {
   if (running) return;
   running = true;
+  byId("loop").dataset.started = "";
   showRunning();
   if (!opened) await reopen();
   let last = performance.now();

@@ -5,13 +5,18 @@ import { byId, element, painted, sigmas } from "./dom.js";
 import { worstCell } from "./error_map.js";
 import { faultLines } from "./fault.js";
 import { connectFiles } from "./files.js";
-import { drawMissing, drawRanking, insert } from "./missing.js";
+import { drawMissing, drawRanking, insert, meaning } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
-import { endOverlay, listOverlay, refreshOverlay } from "./overlay.js";
+import { endOverlay, isOverlaid, openOverlay, overlayBox, previewOverlay, refreshOverlay } from "./overlay.js";
 import { openForm } from "./own_term.js";
-import { drawRun, loadLibrary, redrawRun } from "./run_plot.js";
+import { connectCursor } from "./plot_cursor.js";
+import { arrange, connectRuns, listRuns, pickRun, tellErrors } from "./run_list.js";
+import { drawRun, loadLibrary, readable, redrawRun, zoomRun } from "./run_plot.js";
 import { connectSecond, drawCompared } from "./second.js";
 import { Refused, ask, begin, follow, leave, post } from "./server.js";
+import { chosen, listSignals } from "./signals.js";
+import { connectTabs, openTab } from "./tabs.js";
+import { connectTrials } from "./trial.js";
 
 /** Set before a control acts.
  * @type {State} */
@@ -36,7 +41,8 @@ async function open() {
   }
   byId("views").hidden = false;
   connectFiles(another);
-  listRuns();
+  connectTabs((tab) => { if (tab === "model") drawCourse(state, live).catch(sayError); });
+  list();
   draw();
   await painted();
   performance.mark("first view");
@@ -55,7 +61,7 @@ async function open() {
 async function another() {
   state = await ask("state");
   signed = null;
-  listRuns();
+  list();
   draw();
   await showWorst();
 }
@@ -72,12 +78,29 @@ async function refresh() {
   if (!state.ranking) signed = null;
   draw();
   showJob(state.job);
+  tellErrors(state.runs.map((run) => run.error));
+  arrange();
   if (view) {
     view = await look(view.run);
-    byId("place").textContent = "";
-    await drawRun(byId("plot"), view, undefined);
+    tell("");
+    await redraw(undefined);
   }
   await refreshOverlay();
+}
+
+/** States what is shown; a window that is too narrow for it has it as a hint.
+ * @param {string} text */
+function tell(text) {
+  byId("place").textContent = byId("place").title = text;
+}
+
+/** Draws the run with the chosen signals; `place` as for `drawRun`.
+ * @param {Place | null | undefined} place */
+async function redraw(place) {
+  if (!view || byId("plot").clientWidth === 0) return;
+  byId("runs-title").replaceChildren(view.file, element("small", {}, view.conditions));
+  byId("runs-title").title = `${view.file}, ${view.conditions}`;
+  await drawRun(byId("plot"), chosen(view), place);
 }
 
 /** Draws everything except the run. */
@@ -86,11 +109,16 @@ function draw() {
   byId("subtitle").textContent = [state.description, `model ${state.model}`,
     `${state.runs.length} ${state.runs.length === 1 ? "run" : "runs"}`].filter(Boolean).join(" · ");
   document.title = `${state.campaign} – hitch`;
-  drawCompared(state, { visit: guarded(visit), compare: guarded(compare) });
+  byId("title").title = meaning(state, "σ");
+  byId("words").replaceChildren(...state.words.flatMap(({ term, means }) => [element("dt", {}, term), element("dd", {}, means)]));
+  drawCompared(state, visits);
   drawModel(state, acts);
   drawMissing(state, { ...acts, signed: signed?.name });
   followModel(state);
 }
+
+/** Actions of the error map. */
+const visits = { visit: guarded(visit), compare: guarded(compare) };
 
 /** Actions of the panels. */
 const acts = {
@@ -101,15 +129,19 @@ const acts = {
   run: guarded(async (/** @type {Task} */ task) => {
     await launch(() => post("start", task), ["add", "term", "adopt"].includes(task.task));
   }),
-  preview: guarded(preview),
+  preview: guarded(connectTrials(() => view, () => state, {
+    run: async (/** @type {RunView} */ tried) => { if (!isOverlaid()) await redrawRun(byId("plot"), chosen(tried)); },
+    overlay: previewOverlay,
+    all: showTrial,
+  })),
   sign: guarded(async (/** @type {Effect} */ effect) => {
     if (!view) return;
     signed = signed?.name === effect.name ? null : effect;
     view = await look(view.run);
     draw();
     /** @type {HTMLElement | null} */ (document.querySelector(`#ranking [aria-label="Signature of ${effect.title}"]`))?.focus();
-    byId("place").textContent = signed ? `Signature of: ${signed.title}` : "";
-    await drawRun(byId("plot"), view, undefined);
+    tell(signed ? `Signature of: ${signed.title}` : "");
+    await redraw(undefined);
   }),
 };
 
@@ -145,40 +177,19 @@ async function look(index) {
     ({ ...channel, ...channels[at] })) };
 }
 
-/** Scrolls to the panel of the model, which shows the error. */
+/** Opens the panel of the model, which shows the error. */
 function watch() {
-  byId("model").scrollIntoView({ block: "nearest" });
+  openTab("model");
   byId("model-title").focus({ preventScroll: true });
 }
 
-/** @type {Trial | null} */
-let wanted = null;
-let previewing = false;
-
-/** Redraws the run with a manually set parameter; during a request, only the latest value is queued.
- * @param {Trial} trial */
-async function preview(trial) {
-  wanted = trial;
-  if (previewing) return;
-  previewing = true;
-  try {
-    while (wanted && view) {
-      /** @type {Trial} */
-      const next = wanted;
-      wanted = null;
-      const began = performance.now();
-      const tried = await post("preview", { ...next, run: view.run });
-      if (tried.run !== view.run) continue;
-      const channels = view.channels.map((channel, index) =>
-        ({ ...channel, ...tried.channels[index] }));
-      await redrawRun(byId("plot"), { ...view, channels });
-      performance.measure("redraw", { start: began });
-      const errors = channels.map((one) => `${one.title} ${sigmas(one.error)} σ`);
-      byId("place").textContent = `This run: ${errors.join(", ")}`;
-    }
-  } finally {
-    previewing = false;
-  }
+/** Shows the errors of all runs with a parameter set by hand.
+ * @param {import("./trial.js").TriedRuns} tried */
+function showTrial({ error, channels, runs, cells }) {
+  byId("title").textContent = `${state.campaign}: error ${sigmas(error)} σ`;
+  tell(`Trial: ${channels.map((one) => `${one.title} ${sigmas(one.error)}`).join(", ")} σ`);
+  tellErrors(runs);
+  if (!state.second) drawCompared({ ...state, error, channels, cells }, visits);
 }
 
 /** Handles a progress message of a computation.
@@ -196,7 +207,7 @@ function hear(message) {
     tried = insert(tried, message.candidate);
     fraction(message.fraction);
     byId("job-text").textContent = `${byId("job").dataset.title}: ${message.candidate.effect.title}`;
-    drawRanking(tried, { ...acts, signed: "" });
+    drawRanking(tried, { ...acts, signed: "" }, state);
   } else {
     showJob(null);
     if (message.kind === "failed") say(message.text);
@@ -250,11 +261,14 @@ function guarded(work) {
   };
 }
 
-function listRuns() {
-  const option = (/** @type {State["runs"][number]} */ run, /** @type {number} */ index) =>
-    element("option", { value: index }, `${run.file}, ${run.conditions}`);
-  byId("run").replaceChildren(...state.runs.map(option));
-  listOverlay(state, sayError);
+/** Lists runs and signals of the campaign. */
+function list() {
+  listRuns(state.runs, guarded((run) => show(run, null)), (run) => overlayBox(run, state.runs[run].file, sayError));
+  listSignals(state.channels, () => {
+    redraw(undefined).catch(sayError);
+    refreshOverlay().catch(sayError);
+  });
+  openOverlay(state, sayError);
 }
 
 /** Shows the stretch with the largest error of a cell.
@@ -263,9 +277,8 @@ async function visit(cell) {
   const { run, stretch } = await ask("worst", { by: cell.by, part: cell.part, channel: cell.channel });
   const channel = state.channels.find((one) => one.key === cell.channel);
   await show(run, stretch);
-  byId("place").textContent =
-    `Worst for ${channel?.title ?? cell.channel}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
-    `${sigmas(stretch.error)} σ`;
+  tell(`Worst for ${channel?.title ?? cell.channel}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
+    `${sigmas(stretch.error)} σ`);
 }
 
 /** Shows the stretch that contributes most to the change of a cell.
@@ -274,9 +287,8 @@ async function compare(cell) {
   const { run, stretch } = await ask("second/largest", { by: cell.by, part: cell.part, channel: cell.channel });
   const channel = state.channels.find((one) => one.key === cell.channel);
   await show(run, stretch);
-  byId("place").textContent =
-    `Largest change for ${channel?.title ?? cell.channel}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
-    `${sigmas(stretch.before)} → ${sigmas(stretch.after)} σ`;
+  tell(`Largest change for ${channel?.title ?? cell.channel}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
+    `${sigmas(stretch.before)} → ${sigmas(stretch.after)} σ`);
 }
 
 /** Shows a run.
@@ -285,9 +297,9 @@ async function compare(cell) {
 async function show(index, place) {
   endOverlay();
   view = await look(index);
-  /** @type {HTMLSelectElement} */ (byId("run")).value = String(index);
-  byId("place").textContent = "";
-  await drawRun(byId("plot"), view, place);
+  pickRun(index);
+  tell("");
+  await redraw(place);
 }
 
 /** @param {unknown} error */
@@ -297,9 +309,7 @@ function showFault(error) {
 }
 
 byId("again").addEventListener("click", () => location.reload());
-byId("whole").addEventListener("click", () => view && drawRun(byId("plot"), view, null));
-byId("run").addEventListener("change", guarded((event) =>
-  show(Number(/** @type {HTMLSelectElement} */ (event.target).value), null)));
+byId("whole").addEventListener("click", () => redraw(null));
 byId("undo").addEventListener("click", () => acts.go(state.at - 1));
 byId("redo").addEventListener("click", () => acts.go(state.at + 1));
 byId("fit").addEventListener("click", () => acts.run({ task: "fit" }));
@@ -314,11 +324,20 @@ byId("cancel").addEventListener("click", guarded(async () => {
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   if (!view) return;
   draw();
-  drawRun(byId("plot"), view, undefined);
+  redraw(undefined);
   refreshOverlay().catch(sayError);
   redrawLoop();
 });
 
+connectRuns();
+connectCursor("plot", () => view && readable(byId("plot"), view), { at: byId("plot"),
+  tell,
+  zoom: (span) => { if (view) (span ? zoomRun(byId("plot"), view, span) : redraw(null)).catch(sayError); } });
+let resized = 0;
+new ResizeObserver(() => {
+  cancelAnimationFrame(resized);
+  resized = requestAnimationFrame(() => { redraw(undefined).catch(sayError); });
+}).observe(byId("plot-view"));
 connectSecond(launch, refresh);
 connectLoop(sayError);
 open();

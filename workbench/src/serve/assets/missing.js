@@ -14,8 +14,8 @@ const SIGN = 0.005;
  * @param {State} state
  * @param {Acts} acts */
 export function drawMissing(state, acts) {
-  byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, state.effects.length > 0, acts.run) : []));
-  if (state.ranking) drawRanking(state.ranking.candidates, acts, state.ranking.next_experiment);
+  byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, state, acts.run) : []));
+  if (state.ranking) drawRanking(state.ranking.candidates, acts, state, state.ranking.next_experiment);
   else byId("ranking").replaceChildren();
   if (state.ranking?.constants_hint) byId("ranking").append(element("p", {}, state.ranking.constants_hint));
 }
@@ -23,18 +23,19 @@ export function drawMissing(state, acts) {
 /** Draws the candidates evaluated so far.
  * @param {Candidate[]} candidates
  * @param {Acts} acts
+ * @param {State} state
  * @param {string | null} [next] */
-export function drawRanking(candidates, acts, next = null) {
+export function drawRanking(candidates, acts, state, next = null) {
   const shows = (/** @type {Candidate} */ one) => one.explains >= SIGN || (one.confidence ?? 0) >= SIGN;
   const seen = candidates.filter(shows);
   const unseen = candidates.filter((one) => !shows(one));
   /** @type {HTMLElement[]} */
-  const parts = [element("h3", {}, "Each effect alone"), ...seen.map((one) => candidate(one, acts))];
+  const parts = [element("h3", {}, "Each effect alone"), ...seen.map((one) => candidate(one, acts, state))];
   if (candidates.length > 0 && seen.length === 0) parts.push(element("p", {}, "No effect is detectable in these data."));
   if (next) parts.push(element("p", {}, `Experiment that separates them: ${next}.`));
   if (unseen.length > 0) {
     parts.push(element("details", {}, element("summary", {}, `${unseen.length} more, not detectable in these data`),
-      ...unseen.map((one) => candidate(one, acts))));
+      ...unseen.map((one) => candidate(one, acts, state))));
   }
   byId("ranking").replaceChildren(...parts);
 }
@@ -49,9 +50,18 @@ export function insert(candidates, tried) {
   return [...others, best].sort((a, b) => a.error_after - b.error_after);
 }
 
+/** What a term means, for the hint of its figure.
+ * @param {State} state
+ * @param {string} term */
+export function meaning(state, term) {
+  const word = state.words.find((one) => one.term === term);
+  return word ? `${term}: ${word.means}` : "";
+}
+
 /** @param {Candidate} one
- * @param {Acts} acts */
-function candidate(one, acts) {
+ * @param {Acts} acts
+ * @param {State} state */
+function candidate(one, acts, state) {
   const add = element("button", { type: "button", class: "add", "aria-label": `Add ${one.effect.title}`,
     onclick: () => acts.run({ task: "add", effect: one.effect.name }) }, "Add");
   // A ranking in progress has no confidences yet, and the server no signatures.
@@ -65,9 +75,9 @@ function candidate(one, acts) {
     element("div", { class: "row" }, element("h3", {}, one.effect.title), ...sign, add),
     element("meter", { min: 0, max: 1, value: one.explains, "aria-label": `Share explained by ${one.effect.title}` }),
     element("div", { class: "figures" },
-      element("span", {}, `explains ${(100 * one.explains).toFixed(0)} %`),
-      element("span", {}, `leaves ${sigmas(one.error_after)} σ`),
-      element("span", {}, confidence)),
+      element("span", { title: meaning(state, "explains") }, `explains ${(100 * one.explains).toFixed(0)} %`),
+      element("span", { title: meaning(state, "σ") }, `leaves ${sigmas(one.error_after)} σ`),
+      element("span", { title: meaning(state, "confidence") }, confidence)),
     element("div", { class: "values" }, parameters(one)),
     ...twins(one), details(one.effect));
 }
@@ -90,25 +100,27 @@ function twins(one) {
 /** @param {Effect} effect */
 function details(effect) {
   return element("details", {}, element("summary", {}, "Equation, visibility, source"),
-    element("code", { class: "equation" }, effect.equation), element("p", {}, `Shows: ${effect.shows}.`),
+    element("code", { class: "equation" }, effect.equation),
+    element("ul", {}, ...effect.parameters.map((one) => element("li", {}, `${one.name}: ${one.meaning}`))),
+    element("p", {}, `Shows: ${effect.shows}.`),
     element("p", {}, `Source: ${effect.source}.`));
 }
 
 /** @param {Explained} found
- * @param {boolean} keeps whether the model has effects already
+ * @param {State} state
  * @param {Run} run */
-function explanation(found, keeps, run) {
+function explanation(found, state, run) {
   const boxes = found.steps.map((step) =>
     element("input", { type: "checkbox", checked: true, "aria-label": `Accept ${step.effect.title}` }));
   const take = element("button", { type: "button", class: "main", id: "adopt", onclick: () => {
     const steps = boxes.map((box, index) => (box.checked ? index : -1));
     run({ task: "adopt", steps: steps.filter((index) => index >= 0) });
   } }, "Accept the selected steps");
-  const parts = found.steps.map((step, index) => accepted(step, boxes[index]));
+  const parts = found.steps.map((step, index) => accepted(step, boxes[index], state));
   return [element("h3", {}, "Explanation"),
     element("p", {}, element("strong", {}, `Verdict: ${found.verdict}. `), found.meaning),
     ...(found.unfinished ? [element("p", {}, "The search ended before its result was stable: there may be more effects.")] : []),
-    ...(keeps ? [element("p", {},
+    ...(state.effects.length > 0 ? [element("p", {},
       "Effects of the model are kept; only their sizes may change. Remove an effect to have it re-examined.")] : []),
     ...(found.constants ? [constants(found.constants)] : []),
     ...parts,
@@ -150,14 +162,15 @@ function suggested(term, run) {
 }
 
 /** @param {ExplainedStep} step
- * @param {HTMLInputElement} box */
-function accepted(step, box) {
+ * @param {HTMLInputElement} box
+ * @param {State} state */
+function accepted(step, box, state) {
   const was = step.changed_from === null ? "" : `, changed from ${number(step.changed_from)}`;
   return element("div", { class: "effect" },
     element("div", { class: "row" }, element("label", {}, box, " ", element("strong", {}, step.effect.title)), was),
     element("div", { class: "figures" },
       element("span", {}, `${sigmas(step.error_before)} → ${sigmas(step.error_after)} σ`),
-      element("span", {}, `held out ${sigmas(step.held_out_after)} σ`),
-      element("span", {}, `${step.in_words}, ${(100 * step.confidence).toFixed(0)} %`)),
+      element("span", { title: meaning(state, "held-out") }, `held out ${sigmas(step.held_out_after)} σ`),
+      element("span", { title: meaning(state, "confidence") }, `${step.in_words}, ${(100 * step.confidence).toFixed(0)} %`)),
     element("div", { class: "values" }, parameters(step)), ...twins(step), details(step.effect));
 }

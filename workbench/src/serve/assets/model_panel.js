@@ -42,6 +42,7 @@ export function drawModel(state, acts) {
  * @param {{fraction: number, error: number}[]} live */
 export async function drawCourse(state, live) {
   const plotly = await library;
+  if (byId("course").clientWidth === 0) return;
   const done = state.steps.slice(0, state.at + 1);
   const x = done.map((_, index) => index);
   const last = state.at;
@@ -55,7 +56,7 @@ export async function drawCourse(state, live) {
       visible: live.length > 0 },
   ].map((trace) => ({ ...trace, hovertemplate: "%{y:.2f} σ" }));
   await plotly.react(byId("course"), traces, {
-    height: 200, margin: { l: 52, r: 12, t: 8, b: 40 }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: colour("paper"),
+    height: 150, margin: { l: 52, r: 12, t: 8, b: 36 }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: colour("paper"),
     font: { color: colour("ink"), size: 12 }, showlegend: true,
     legend: { orientation: "h", x: 1, xanchor: "right", y: 1.02, yanchor: "top" },
     hoverlabel: { bgcolor: colour("card"), font: { color: colour("ink") } },
@@ -113,7 +114,7 @@ function slider(added, parameter, where, acts) {
     checked: parameter.fixed, "aria-label": `Fix ${parameter.name} of ${added.effect.title} in fits`,
     onchange: () => acts.run({ task: "fix", ...where, fixed: fix.checked }) });
   return element("div", { class: "fixable" },
-    element("label", { class: "parameter" }, element("span", {}, parameter.name), input, output),
+    element("label", { class: "parameter" }, element("span", {}, `${parameter.name}: `, element("small", {}, parameter.meaning)), input, output),
     element("label", { class: "fix", title: "A fixed parameter keeps its value in fits" }, fix, " fixed"));
 }
 

@@ -4,13 +4,14 @@
  * The axes are those of the plotting library. The lines are drawn on a canvas above them: the library takes 0.3 to 0.6 s for the lines of
  * 20 runs, the canvas with the axes 0.05 s.
  */
-import { byId, colour, element } from "./dom.js";
-import { connectCursor } from "./overlay_cursor.js";
-import { frame, library, ordinate } from "./run_plot.js";
-import { ask } from "./server.js";
+import { byId, colour, element, isWide } from "./dom.js";
+import { connectCursor, short } from "./plot_cursor.js";
+import { frame, library, ordinate, sampleAt } from "./run_plot.js";
+import { ask, post } from "./server.js";
+import { chosen } from "./signals.js";
 
-/** Heights of a row and between rows, px. */
-const ROW = 150, GAP = 22;
+/** Heights of a row, its least height, and between rows, px. */
+const ROW = 150, LEAST = 50, GAP = 22;
 
 /** Margins of the plot, px. */
 const MARGIN = { l: 52, r: 12, t: 24, b: 42 };
@@ -42,34 +43,40 @@ let latest = 0;
 /** What is drawn. @type {{rows: Row[], runs: [number, RunView][], range: [number, number]} | null} */
 let drawn = null;
 
-/** Lists the runs of a campaign, which is also the legend; none is ticked.
+/** Prepares the overlay of a campaign: none of its runs is ticked.
  * @param {State} state
  * @param {(error: unknown) => void} fail */
-export function listOverlay(state, fail) {
+export function openOverlay(state, fail) {
   views.clear();
-  const entry = (/** @type {State["runs"][number]} */ run, /** @type {number} */ index) => {
-    const box = element("input", { type: "checkbox", value: index, onchange: () => {
-      if (box.checked) ticked.add(index);
-      else ticked.delete(index);
-      update().catch(fail);
-    } });
-    return element("label", { title: run.conditions }, box, element("span", { class: "swatch", style: `background: ${hue(index)}`, "data-run": index }),
-      run.file);
-  };
-  byId("overlay-runs").replaceChildren(...state.runs.map(entry));
+  ticked.clear();
   byId("overlay").hidden = state.runs.length < 2;
-  byId("overlay-all").onclick = () => tick(state.runs.length).catch(fail);
-  byId("overlay-none").onclick = () => tick(0).catch(fail);
-  tick(0).catch(fail);
+  byId("overlay-all").onclick = () => tick(true).catch(fail);
+  byId("overlay-none").onclick = () => tick(false).catch(fail);
+  byId("overlay").ontoggle = () => byId("run").toggleAttribute("data-overlay", /** @type {HTMLDetailsElement} */ (byId("overlay")).open);
+  tick(false).catch(fail);
 }
 
-/** Ticks the first runs only.
- * @param {number} runs */
-async function tick(runs) {
+/** The box that ticks a run, and its entry of the legend.
+ * @param {number} index
+ * @param {string} file
+ * @param {(error: unknown) => void} fail */
+export function overlayBox(index, file, fail) {
+  const box = element("input", { type: "checkbox", value: index, "aria-label": `Overlay ${file}`, onchange: () => {
+    if (box.checked) ticked.add(index);
+    else ticked.delete(index);
+    update().catch(fail);
+  } });
+  return [element("span", { class: "swatch", style: `background: ${hue(index)}`, "data-run": index }), box];
+}
+
+/** Ticks the listed runs, or none.
+ * @param {boolean} all */
+async function tick(all) {
   ticked.clear();
-  for (const [index, box] of document.querySelectorAll("#overlay-runs input").entries()) {
-    /** @type {HTMLInputElement} */ (box).checked = index < runs;
-    if (index < runs) ticked.add(index);
+  for (const element of document.querySelectorAll("#run input[type=checkbox]")) {
+    const box = /** @type {HTMLInputElement} */ (element);
+    box.checked = all && !box.closest("[hidden]");
+    if (box.checked) ticked.add(Number(box.value));
   }
   await update();
 }
@@ -78,40 +85,63 @@ async function tick(runs) {
 export function endOverlay() {
   if (ticked.size === 0) return;
   toggle(false);
-  tick(0);
+  tick(false);
 }
 
 /** Shows the overlay or the single run.
  * @param {boolean} overlaid */
 function toggle(overlaid) {
   byId("overlay-view").hidden = !overlaid;
-  byId("plot").hidden = overlaid;
+  byId("plot-view").hidden = overlaid;
   if (overlaid) byId("place").textContent = "";
 }
 
 /** Draws the runs with a changed model. */
 export async function refreshOverlay() {
   views.clear();
-  for (const swatch of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("#overlay-runs .swatch"))) {
+  for (const swatch of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("#run .swatch"))) {
     swatch.style.background = hue(Number(swatch.dataset.run));
   }
   if (ticked.size) await update();
 }
 
+/** Draws the overlaid runs with a parameter set by hand; the axes stay.
+ * @param {Trial} trial */
+export async function previewOverlay(trial) {
+  const before = drawn;
+  if (!before || byId("overlay-view").hidden) return;
+  const runs = await Promise.all(before.runs.map(async ([run, view]) => {
+    const tried = await post("preview", { ...trial, run });
+    const all = views.get(run)?.channels ?? [];
+    /** @type {Map<string, RunChannel>} */
+    const simulated = new Map(all.map((channel, at) => [channel.key, tried.channels[at]]));
+    return /** @type {[number, RunView]} */ ([run,
+      { ...view, channels: view.channels.map((channel) => ({ ...channel, ...simulated.get(channel.key) })) }]);
+  }));
+  if (drawn !== before) return;
+  drawn = { ...before, runs };
+  paint();
+}
+
+/** Whether several runs are shown. */
+export function isOverlaid() {
+  return ticked.size > 0;
+}
+
 /** Draws the ticked runs. */
 async function update() {
   const mine = ++latest;
-  const chosen = [...ticked].sort((a, b) => a - b);
-  await Promise.all(chosen.map(async (run) => {
+  const wanted = [...ticked].sort((a, b) => a - b);
+  await Promise.all(wanted.map(async (run) => {
     if (!views.has(run)) views.set(run, await ask("run", { run }));
   }));
   const plotly = await library;
   if (mine !== latest) return;
-  const was = byId("plot").hidden;
-  toggle(chosen.length > 0);
-  byId("overlay").dataset.shown = String(chosen.length);
+  const was = byId("plot-view").hidden;
+  toggle(wanted.length > 0);
+  byId("overlay").dataset.shown = String(wanted.length);
   drawn = null;
-  if (chosen.length === 0) {
+  if (wanted.length === 0) {
     zoomed = null;
     // It may have been drawn without a width.
     if (was) await plotly.Plots.resize(byId("plot"));
@@ -119,9 +149,9 @@ async function update() {
   }
   const began = performance.now();
   const at = /** @type {Plotted} */ (byId("overlay-plot"));
-  const runs = chosen.flatMap((run) => {
+  const runs = wanted.flatMap((run) => {
     const view = views.get(run);
-    return view ? [/** @type {[number, RunView]} */ ([run, view])] : [];
+    return view ? [/** @type {[number, RunView]} */ ([run, chosen(view)])] : [];
   });
   const { traces, layout, rows, range } = figure(runs);
   await plotly.react(at, traces, layout, { displaylogo: false, responsive: true,
@@ -152,7 +182,7 @@ function connect(at) {
     paint();
   });
   at.on("plotly_doubleclick", () => { zoomed = null; update(); });
-  connectCursor(() => {
+  connectCursor("overlay", () => {
     if (!drawn) return null;
     const right = at.clientWidth - MARGIN.r;
     return { left: MARGIN.l, right, range: drawn.range, read: reading };
@@ -165,35 +195,15 @@ function connect(at) {
 function reading(time_s) {
   if (!drawn) return [];
   const places = drawn.runs.map(([, view]) => sampleAt(view.time_s, view.time_s[0] + time_s));
-  return drawn.rows.map(({ key, top, unit }) => {
+  return drawn.rows.map(({ key, title, top, unit }) => {
     const values = (drawn?.runs ?? []).flatMap(([, view], index) => {
       const value = view.channels.find((one) => one.key === key)?.measured[places[index]];
       return value === null || value === undefined ? [] : [value];
     });
     const [low, high] = [Math.min(...values), Math.max(...values)];
-    const text = !values.length ? "–" : values.length === 1 ? `${number(low)} ${unit}` : `${number(low)} to ${number(high)} ${unit}`;
-    return { top, text };
+    const text = !values.length ? "–" : values.length === 1 ? short(low) : `${short(low)} to ${short(high)}`;
+    return { top, title, unit, readings: [{ text }] };
   });
-}
-
-/** Index of the last sample up to a time; behind the end, there is none.
- * @param {number[]} times_s
- * @param {number} time_s */
-function sampleAt(times_s, time_s) {
-  if (time_s > times_s[times_s.length - 1]) return -1;
-  let [low, high] = [0, times_s.length];
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (times_s[middle] <= time_s) low = middle;
-    else high = middle;
-  }
-  return low;
-}
-
-/** A value for a label.
- * @param {number} value */
-function number(value) {
-  return value.toFixed(Math.abs(value) < 10 ? 2 : 1);
 }
 
 /** Axes of the channels of some runs.
@@ -205,7 +215,9 @@ function figure(runs) {
   for (const channel of runs.flatMap(([, view]) => view.channels)) {
     if (!channels.has(channel.key)) channels.set(channel.key, channel);
   }
-  const inner = channels.size * (ROW + GAP);
+  const free = byId("overlay-view").clientHeight - MARGIN.t - MARGIN.b;
+  const height = isWide() && free > 0 ? Math.max(LEAST, free / channels.size - GAP) : ROW;
+  const inner = channels.size * (height + GAP);
   Object.assign(layout, { height: inner + MARGIN.t + MARGIN.b, margin: MARGIN, showlegend: false, hovermode: false });
   const longest = Math.max(...runs.map(([, { time_s }]) => time_s[time_s.length - 1] - time_s[0]));
   const range = /** @type {[number, number]} */ (zoomed ?? [0, longest]);
@@ -213,7 +225,7 @@ function figure(runs) {
     anchor: channels.size === 1 ? "y" : `y${channels.size}` });
   const rows = [...channels.values()].map(({ key, title, unit }, index) => {
     const axis = index === 0 ? "" : String(index + 1);
-    const high = 1 - (index * (ROW + GAP) + GAP) / inner, low = Math.max(0, high - ROW / inner);
+    const high = 1 - (index * (height + GAP) + GAP) / inner, low = Math.max(0, high - height / inner);
     const row = { key, title, unit, top: MARGIN.t + (1 - high) * inner, height: (high - low) * inner, range: extent(runs, key) };
     layout[`yaxis${axis}`] = { ...ordinate(row.unit, low, high, 5), range: row.range };
     layout.annotations.push({ text: row.title, x: 0, xref: "paper", xanchor: "left", y: high, yref: "paper", yanchor: "bottom",

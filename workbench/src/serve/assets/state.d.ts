@@ -4,8 +4,12 @@
 interface State extends ErrorMap<Cell, MeasuredChannel> {
   campaign: string;
   description: string;
+  /** Name and kind of the first model. */
   model: string;
-  runs: { file: string; conditions: string }[];
+  /** What the terms of results mean. */
+  words: { term: string; means: string }[];
+  /** Each with its error in sigma. */
+  runs: { file: string; conditions: string; error: number | null }[];
   /** Error of all channels, sigma. */
   error: number;
   second: SecondModel | null;
@@ -62,6 +66,7 @@ interface Effect {
   equation: string;
   shows: string;
   source: string;
+  parameters: { name: string; meaning: string }[];
 }
 
 interface AddedEffect {

@@ -76,6 +76,7 @@ export async function drawChart(now = false) {
   drawn = performance.now();
   try {
     const plotly = await library;
+    if (byId("loop-chart").clientWidth === 0) return;
     const { traces, layout } = figure();
     await plotly.react(byId("loop-chart"), traces, layout, { displayModeBar: false, responsive: true });
     performance.measure("strip chart", { start: drawn });

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
 use hitch_identification::selection::candidate;
-use hitch_plant::{Effect, full_name};
+use hitch_plant::{Effect, Parameter, full_name};
 use serde_json::{Value, json};
 
 use crate::explanation::{Candidate, Corrected, Step, explained as share_explained, parameters};
@@ -20,7 +20,12 @@ pub fn described(effect: &dyn Effect) -> Value {
         "equation": effect.equation(),
         "shows": effect.shows(),
         "source": effect.source(),
+        "parameters": effect.parameters().iter().map(meaning).collect::<Vec<_>>(),
     })
+}
+
+fn meaning(parameter: &Parameter) -> Value {
+    json!({ "name": parameter.name, "meaning": parameter.meaning })
 }
 
 /// A candidate directly after its evaluation; its confidence is known only when all are evaluated.
