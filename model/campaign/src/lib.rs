@@ -29,6 +29,8 @@ pub mod survey;
 mod table;
 mod time_base;
 
+pub use table::{ClockStep, LogNotes};
+
 use std::path::{Path, PathBuf};
 
 use hitch_input::input_error::InputError;
@@ -139,14 +141,19 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`].
     pub fn of_manifest(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
-        manifest::read(dir, &of_text(dir, text), linkage, table::LONGEST_STEP_S)
+        let read = manifest::read(dir, &of_text(dir, text), linkage, table::LONGEST_STEP_S);
+        read.map(|(campaign, _)| campaign)
     }
 
-    /// The same, whose logs are not yet cut into runs: their clocks may jump ahead.
+    /// The same, whose logs are not yet cut into runs: their clocks may be set. What a reader of each log should know.
     ///
     /// # Errors
     /// As [`Campaign::load`].
-    pub fn uncut(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
+    pub fn uncut(
+        dir: &Path,
+        text: &str,
+        linkage: &Linkage,
+    ) -> Result<(Self, Vec<LogNotes>), CampaignError> {
         manifest::read(dir, &of_text(dir, text), linkage, f64::INFINITY)
     }
 

@@ -40,12 +40,12 @@ pub fn campaign(
 ) -> Result<(String, Campaign, Vec<String>), Error> {
     let mut notes = Vec::new();
     let logs = joined(folder, logs, can, linkage, &mut notes)?;
-    let whole = Campaign::uncut(folder, &text(name, can, &logs), linkage)?;
+    let (whole, logged) = Campaign::uncut(folder, &text(name, can, &logs), linkage)?;
     let mut useful = Vec::with_capacity(logs.len());
-    for (mut log, run) in logs.into_iter().zip(&whole.runs) {
-        let found = cuts(run);
+    for ((mut log, run), logged) in logs.into_iter().zip(&whole.runs).zip(&logged) {
+        let found = cuts(run, &logged.steps);
         let said = |note: &String| format!("{}: {note}", run.file);
-        notes.extend(found.notes.iter().map(said));
+        notes.extend(logged.cut_off.iter().chain(&found.notes).map(said));
         log.cuts = found.runs;
         useful.extend((!found.is_useless).then_some(log));
     }

@@ -7,8 +7,9 @@ use crate::CampaignError;
 use crate::csv_log::clock::{DateOrder, Times, is_clock, is_date};
 use crate::csv_log::dialect::{Decimals, Header, is_missing, is_sample, rows};
 use crate::csv_log::lvm::{self, Steps};
+use crate::series::rises;
 use crate::table::cell_error;
-use crate::time_base::{Seen, bases, is_time_name, notes, rises};
+use crate::time_base::{Seen, bases, is_time_name, notes};
 
 /// Number of rows that are examined.
 const EXAMINED_ROWS: usize = 1_000;

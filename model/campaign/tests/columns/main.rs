@@ -10,6 +10,7 @@ use hitch_plant::Channel;
 use proptest::prelude::*;
 use tempfile::TempDir;
 
+mod clock;
 mod groups;
 mod shape;
 
