@@ -17,11 +17,11 @@ mod columns;
 mod csv_log;
 mod cut;
 mod dropout;
-mod little_endian;
 mod manifest;
 mod mdf_log;
 mod mdf_unit;
 mod number_log;
+mod run_block;
 mod run_log;
 mod scale;
 mod series;
@@ -29,13 +29,14 @@ pub mod survey;
 mod table;
 mod time_base;
 
+pub use run_block::RunBlock;
 pub use table::{ClockStep, LogNotes};
 
 use std::path::{Path, PathBuf};
 
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
-use hitch_plant::{Channel, Linkage};
+use hitch_plant::{Channel, HitchRig, Linkage, Rig, units};
 
 /// A fault of a campaign, with file, line and column.
 pub type CampaignError = InputError;
@@ -109,6 +110,22 @@ pub struct Run {
     pub channels: [Option<Vec<f64>>; 4],
     /// Logged oil temperature, degrees Celsius; NaN at a dropout.
     pub oil_temperature_log_c: Option<Vec<f64>>,
+}
+
+impl Bench {
+    /// The simulated rig; one of a hitch starts at this rocker angle, rad.
+    #[must_use]
+    pub fn rig(self, start_angle_rad: f64) -> Rig {
+        match self {
+            Self::Hitch { load_kg } => Rig::Hitch(HitchRig {
+                load_kg,
+                start_angle_rad,
+            }),
+            Self::Flow { port_pressure_bar } => Rig::Flow {
+                port_pressure_pa: units::pa_from_bar(port_pressure_bar),
+            },
+        }
+    }
 }
 
 impl Campaign {

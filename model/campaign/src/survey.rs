@@ -113,6 +113,7 @@ pub fn is_bus(path: &Path) -> bool {
 /// # Errors
 /// One of them cannot be read, the log is not a bus log, or it contains no signal of the description.
 pub fn bus_signals(path: &Path, dbc: &Path) -> Result<Signals, CampaignError> {
+    bus_log::check_known(path)?;
     let description = SourceFile::read_any(dbc)?;
     match Format::of(path) {
         Some(format) => bus_log::signals(&format.source(path)?, format, &description),

@@ -212,6 +212,21 @@ impl Table {
         Self { origin_s, ..self }
     }
 
+    /// The same table, of a recording that is cut off behind its last row.
+    pub fn cut_off(self) -> Self {
+        let times_s = self.column(TIME).unwrap_or_default();
+        let lasts_s = times_s.last().zip(times_s.first());
+        let lasts_s = lasts_s.map_or(0.0, |(last_s, first_s)| last_s - first_s);
+        let kept = format!(
+            "the file is cut off: {} samples, {lasts_s:.2} s, are whole",
+            times_s.len()
+        );
+        Self {
+            cut_off: Some(kept),
+            ..self
+        }
+    }
+
     /// Whether another table has the same columns, and times that continue: it belongs to the same recording.
     pub fn is_continued_by(&self, next: &Self) -> bool {
         let times_s = self.column(TIME).unwrap_or_default();

@@ -97,3 +97,20 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn of_a_log_that_is_cut_off_the_whole_frames_are_kept() {
+    for (name, log) in [("a.asc", asc(20, "absolute")), ("a.log", candump(20))] {
+        let manifest = MANIFEST.replace("a.log", name);
+        let line = log.trim_end().rfind('\n').unwrap() + 1;
+        for length in line + 2..log.trim_end().len() {
+            let files = [
+                ("campaign.toml", manifest.clone()),
+                (name, log[..length].to_owned()),
+            ];
+            let folder = damaged(&files, 1, &[]);
+            let campaign = Campaign::load(folder.path()).unwrap_or_else(|error| panic!("{error}"));
+            assert!(campaign.runs[0].time_s.len() >= 19, "{name} {length}");
+        }
+    }
+}
