@@ -1,14 +1,12 @@
 //! Writes `campaign.toml` of an import.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
-use hitch_campaign::Campaign;
+use hitch_campaign::{Bench, Campaign, RunBlock};
 use hitch_model_file::quoted;
 use hitch_plant::Linkage;
 
 use super::columns::Mapping;
-use super::conditions::Conditions;
 use super::cuts::cuts;
 use crate::error::Error;
 
@@ -22,7 +20,7 @@ pub struct Log {
     /// Column assignment; `None` if the default applies.
     pub mapping: Option<Mapping>,
     /// Test stand.
-    pub conditions: Conditions,
+    pub bench: Bench,
     /// Times of its runs, s; empty for a single run of all its samples.
     pub cuts: Vec<(f64, f64)>,
 }
@@ -74,7 +72,7 @@ fn joined(
     let mut joined: Vec<Log> = Vec::new();
     for (log, is_continued) in logs.into_iter().zip(continued) {
         match joined.last_mut() {
-            Some(last) if is_continued && last.conditions == log.conditions => {
+            Some(last) if is_continued && last.bench == log.bench => {
                 notes.push(format!(
                     "{} continues {}: they are joined",
                     log.file, last.file
@@ -100,27 +98,17 @@ fn text(name: &str, can: Option<&str>, logs: &[Log]) -> String {
         text += &lines(common);
     }
     for log in logs {
-        let whole = [(0.0, f64::INFINITY)];
-        let cuts = if log.cuts.is_empty() {
-            &whole[..]
-        } else {
-            &log.cuts[..]
-        };
-        for (from_s, to_s) in cuts {
-            // Writing to a string can't fail.
-            let _ = write!(
-                text,
-                "\n[[run]]\nfile = {}\n{}",
-                quoted(&log.file),
-                log.conditions.lines()
-            );
-            if !log.then.is_empty() {
-                let then: Vec<String> = log.then.iter().map(|file| quoted(file)).collect();
-                let _ = writeln!(text, "then = [{}]", then.join(", "));
-            }
-            if to_s.is_finite() {
-                let _ = write!(text, "from_s = {from_s}\nto_s = {to_s}\n");
-            }
+        let parts = log.cuts.iter().copied().map(Some);
+        let whole = log.cuts.is_empty().then_some(None);
+        for span_s in whole.into_iter().chain(parts) {
+            let block = RunBlock {
+                file: &log.file,
+                then: &log.then,
+                bench: log.bench,
+                oil_temperature_c: None,
+                span_s,
+            };
+            text += &block.to_string();
             if let Some(own) = log.mapping.as_ref().filter(|own| !is_same(own, common)) {
                 text += "[run.columns]\n";
                 text += &lines(own);
@@ -183,7 +171,7 @@ mod tests {
                 file: "a.csv".to_owned(),
                 then: Vec::new(),
                 mapping: None,
-                conditions: Conditions::Hitch { load_kg: 50.0 },
+                bench: Bench::Hitch { load_kg: 50.0 },
                 cuts: Vec::new(),
             };
             let nominal = hitch_model_file::nominal();
