@@ -21,7 +21,6 @@ mod manifest;
 mod mdf_log;
 mod mdf_unit;
 mod number_log;
-mod run_block;
 mod run_log;
 mod scale;
 mod series;
@@ -29,7 +28,6 @@ pub mod survey;
 mod table;
 mod time_base;
 
-pub use run_block::RunBlock;
 pub use table::{ClockStep, LogNotes};
 
 use std::path::{Path, PathBuf};

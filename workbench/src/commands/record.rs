@@ -3,12 +3,13 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::{Bench, Run, RunBlock};
+use hitch_campaign::{Bench, Run};
 
 use super::loop_::{load_kg, temperature_c};
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
+use crate::run_block::RunBlock;
 use crate::text::wrapped;
 use crate::xcp_tool::{
     BusAddress, CHANNELS, PERIOD_MS, Recording, Row, connect, record, tool_error,

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use hitch_campaign::{Bench, Campaign, RunBlock};
+use hitch_campaign::{Bench, Campaign};
 use hitch_model_file::quoted;
 use hitch_plant::Linkage;
 
 use super::columns::Mapping;
 use super::cuts::cuts;
 use crate::error::Error;
+use crate::run_block::RunBlock;
 
 /// A log of a campaign.
 #[derive(Debug, Clone)]

@@ -4,12 +4,13 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::{Campaign, Run, RunBlock};
+use hitch_campaign::{Campaign, Run};
 use hitch_model_file::quoted;
 use hitch_plant::Channel;
 
 use crate::error::Error;
 use crate::output;
+use crate::run_block::RunBlock;
 
 /// A new campaign, with the runs so far.
 pub struct Folder {

@@ -2,9 +2,8 @@
 
 use std::fmt;
 
+use hitch_campaign::Bench;
 use hitch_model_file::quoted;
-
-use crate::Bench;
 
 /// The description of a run in `campaign.toml`.
 #[derive(Debug, Clone, Copy, PartialEq)]
