@@ -68,8 +68,16 @@ fn is_read_or_refused(folder: &TempDir) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// The number of cases of a property: few by day, many with `HITCH_THOROUGH`.
+fn cases(few: u32, many: u32) -> u32 {
+    match std::env::var_os("HITCH_THOROUGH") {
+        Some(_) => many,
+        None => few,
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(64, 16_384), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_damaged_log_is_read_or_refused(
