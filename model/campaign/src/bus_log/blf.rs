@@ -48,27 +48,30 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<Ending, Cam
         bytes: &bytes,
         at: start,
     };
+    let mut is_empty = true;
     while let Some(object) = objects.next().map_err(fault)? {
         if object.kind != Object::CONTAINER {
             pass(&object, sink, source)?;
+            is_empty = false;
             continue;
         }
         unpack(object.body(BASE), &mut content).map_err(fault)?;
         let read = pass_all(&content, sink, source)?;
+        is_empty &= read == 0;
         content.drain(..read);
     }
-    if let Some(container) = objects.cut_container() {
+    let cut = objects.cut_container();
+    if let Some(container) = cut {
         // Its frames up to the end of the file are whole; the fault is that end.
         let _ = unpack(container, &mut content);
-        let _ = pass_all(&content, sink, source);
-        return Ok(Ending::CutOff);
+        is_empty &= pass_all(&content, sink, source).is_ok_and(|read| read == 0);
     }
     let is_whole = objects.at >= bytes.len() && content.iter().all(|&byte| byte == 0);
-    Ok(if is_whole {
-        Ending::Whole
-    } else {
-        Ending::CutOff
-    })
+    match cut.is_none() && is_whole {
+        true => Ok(Ending::Whole),
+        false if is_empty => Err(fault("ends in the middle of an object".to_owned())),
+        false => Ok(Ending::CutOff),
+    }
 }
 
 fn broken(source: &SourceFile, what: Fault) -> CampaignError {
