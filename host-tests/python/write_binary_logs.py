@@ -55,6 +55,22 @@ def write_mat(folder, log):
     simulink = {"out": {"time": time_s.reshape(-1, 1), "signals": signals}}
     scipy.io.savemat(folder / "simulink.mat", simulink, do_compression=True)
     yield "simulink.mat"
+    # Level 4 has matrices and texts only.
+    scipy.io.savemat(folder / "level_4.mat", plain, format="4", oned_as="column")
+    yield "level_4.mat"
+    # ControlDesk of dSPACE: names and units are inside the structs; the angle has its own axis of times.
+    axes = numpy.zeros((2,), dtype=[("Name", "O"), ("Data", "O"), ("Unit", "O")])
+    axes[0] = ("xAxis", time_s * 1000, "ms")
+    axes[1] = ("xAxis", often_s * 1000, "ms")
+    fields = ["Name", "Data", "Unit", "XIndex"]
+    traces = numpy.zeros((4,), dtype=[(field, "O") for field in fields])
+    traces[0] = ("Model Root/Bench/Lift Current", lift_a * 1000, "mA", numpy.uint32(1))
+    traces[1] = ("Model Root/Bench/Lower Current", lower_a, "A", numpy.uint32(1))
+    traces[2] = ("Model Root/Bench/Cylinder Pressure", pressure_bar, "bar", numpy.uint32(1))
+    traces[3] = ("Model Root/Bench/Rocker Angle", angle_rad, "rad", numpy.uint32(2))
+    dspace = {"exp_001": {"X": axes, "Y": traces, "Description": {"General": "x"}}}
+    scipy.io.savemat(folder / "dspace.mat", dspace, do_compression=True, oned_as="row")
+    yield "dspace.mat"
     scipy.io.savemat(folder / "matrix.mat", {"m": log}, do_compression=True)
     units = ["time_s=m(:,1):s", "lift_current_a=m(:,2):A", "lower_current_a=m(:,3):A"]
     units += ["cylinder_pressure_bar=m(:,4):bar", "rocker_angle_deg=m(:,5):deg"]

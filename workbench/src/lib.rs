@@ -26,6 +26,7 @@ pub mod paper;
 pub mod progress;
 pub mod rebuild;
 pub mod report;
+pub mod run_block;
 pub mod search_args;
 pub mod serve;
 pub mod slcan_server;

@@ -90,6 +90,14 @@ pub fn check_writable(path: &Path) -> Result<(), Error> {
     temporary_file(folder_of(path)).map(drop).map_err(fault)
 }
 
+/// The first of names without end that is free.
+pub fn first_free(
+    mut names: impl Iterator<Item = String>,
+    mut is_taken: impl FnMut(&str) -> bool,
+) -> String {
+    names.find(|name| !is_taken(name)).unwrap_or_default()
+}
+
 /// Checks that a folder is writable, or can be created.
 ///
 /// # Errors

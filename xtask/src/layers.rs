@@ -110,7 +110,7 @@ const CRATES: [Layers; 9] = [
         sources: "workbench/src",
         order: &[
             &["error", "progress", "text"],
-            &["output"],
+            &["output", "run_block"],
             &["outputs"],
             &[
                 "interruption",

@@ -17,7 +17,6 @@ mod columns;
 mod csv_log;
 mod cut;
 mod dropout;
-mod little_endian;
 mod manifest;
 mod mdf_log;
 mod mdf_unit;
@@ -29,11 +28,13 @@ pub mod survey;
 mod table;
 mod time_base;
 
+pub use table::{ClockStep, LogNotes};
+
 use std::path::{Path, PathBuf};
 
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
-use hitch_plant::{Channel, Linkage};
+use hitch_plant::{Channel, HitchRig, Linkage, Rig, units};
 
 /// A fault of a campaign, with file, line and column.
 pub type CampaignError = InputError;
@@ -109,6 +110,22 @@ pub struct Run {
     pub oil_temperature_log_c: Option<Vec<f64>>,
 }
 
+impl Bench {
+    /// The simulated rig; one of a hitch starts at this rocker angle, rad.
+    #[must_use]
+    pub fn rig(self, start_angle_rad: f64) -> Rig {
+        match self {
+            Self::Hitch { load_kg } => Rig::Hitch(HitchRig {
+                load_kg,
+                start_angle_rad,
+            }),
+            Self::Flow { port_pressure_bar } => Rig::Flow {
+                port_pressure_pa: units::pa_from_bar(port_pressure_bar),
+            },
+        }
+    }
+}
+
 impl Campaign {
     /// Reads a campaign's folder. An angle logged as cylinder travel is converted with the nominal linkage.
     ///
@@ -139,14 +156,19 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`].
     pub fn of_manifest(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
-        manifest::read(dir, &of_text(dir, text), linkage, table::LONGEST_STEP_S)
+        let read = manifest::read(dir, &of_text(dir, text), linkage, table::LONGEST_STEP_S);
+        read.map(|(campaign, _)| campaign)
     }
 
-    /// The same, whose logs are not yet cut into runs: their clocks may jump ahead.
+    /// The same, whose logs are not yet cut into runs: their clocks may be set. What a reader of each log should know.
     ///
     /// # Errors
     /// As [`Campaign::load`].
-    pub fn uncut(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
+    pub fn uncut(
+        dir: &Path,
+        text: &str,
+        linkage: &Linkage,
+    ) -> Result<(Self, Vec<LogNotes>), CampaignError> {
         manifest::read(dir, &of_text(dir, text), linkage, f64::INFINITY)
     }
 

@@ -12,7 +12,7 @@ use crate::columns::ColumnSettings;
 use crate::cut::Cut;
 use crate::run_log::Settings;
 use crate::series::median_step_s;
-use crate::table::{LONGEST_STEP_S, Table};
+use crate::table::{LONGEST_STEP_S, LogNotes, Table};
 use crate::{Bench, Campaign, CampaignError, Noise, Run, run_log};
 
 /// Key of the files in which a recording continues.
@@ -33,7 +33,7 @@ const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 /// Reads the folder of a campaign with a hitch of this linkage.
 pub fn load(dir: &Path, linkage: &Linkage) -> Result<Campaign, CampaignError> {
     let source = SourceFile::read(&manifest_path(dir)?)?;
-    read(dir, &source, linkage, LONGEST_STEP_S)
+    read(dir, &source, linkage, LONGEST_STEP_S).map(|(campaign, _)| campaign)
 }
 
 /// The logs and the DBC that the manifest in a folder refers to, in any folder.
@@ -52,13 +52,14 @@ pub fn files(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
     Ok(files)
 }
 
-/// Reads the campaign of a manifest located in `dir`, whose samples are at most `longest_step_s` apart.
+/// Reads the campaign of a manifest located in `dir`, whose samples are at most `longest_step_s` apart; and the log of each
+/// run.
 pub fn read(
     dir: &Path,
     source: &SourceFile,
     linkage: &Linkage,
     longest_step_s: f64,
-) -> Result<Campaign, CampaignError> {
+) -> Result<(Campaign, Vec<LogNotes>), CampaignError> {
     let top = TomlTable::parse(source)?;
     check_format(&top)?;
     top.only(&[
@@ -87,20 +88,21 @@ pub fn read(
         linkage,
         longest_step_s,
     };
-    let runs = runs(dir, &top, settings)?;
+    let (runs, logs): (Vec<Run>, _) = runs(dir, &top, settings)?.into_iter().unzip();
     // The rate of the first run's time stamps.
     let logged_rate_hz = runs
         .first()
         .map_or(0.0, |run| 1.0 / median_step_s(&run.time_s));
     let sample_rate_hz = declared_rate_hz.unwrap_or(logged_rate_hz);
-    Ok(Campaign {
+    let campaign = Campaign {
         name,
         description,
         sample_rate_hz,
         synchronous,
         noise,
         runs,
-    })
+    };
+    Ok((campaign, logs))
 }
 
 /// Whether the campaign declares that one clock stamps all channels.
@@ -169,13 +171,13 @@ fn runs(
     dir: &Path,
     top: &TomlTable<'_>,
     settings: Settings<'_>,
-) -> Result<Vec<Run>, CampaignError> {
+) -> Result<Vec<(Run, LogNotes)>, CampaignError> {
     let tables = top.tables("run")?;
     if tables.is_empty() {
         let mend = "add a [[run]] block for every log";
         return Err(top.error_at("run", "the campaign has no runs", mend));
     }
-    let mut runs: Vec<Run> = Vec::with_capacity(tables.len());
+    let mut runs = Vec::with_capacity(tables.len());
     let mut parts: Vec<(&str, Cut)> = Vec::with_capacity(tables.len());
     let files = tables.iter().map(|table| file_name(table, "file"));
     let files = files.collect::<Result<Vec<&str>, CampaignError>>()?;
@@ -207,8 +209,8 @@ fn runs(
         let (name, step_s) = (called(file, &files), settings.longest_step_s);
         let run = run_log::run(&log, name, cut, bench, oil_temperature_c, step_s)?;
         run_log::check_usable(&paths[0], &run)?;
+        runs.push((run, log.notes()));
         last = Some((paths, own, log));
-        runs.push(run);
     }
     Ok(runs)
 }

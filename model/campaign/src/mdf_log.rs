@@ -280,7 +280,10 @@ fn samples_of_v4(file: &Mf4File, channel: &Channel) -> falcon_mdf::Result<(Vec<f
     else {
         return Ok((Vec::new(), file.signal(channel)?.values_f64()?));
     };
-    let times_s = in_seconds(file.channel_timestamps(channel)?, &times.unit);
+    // The library refuses times that are set back, at which a log is split.
+    let logged = file.channel_timestamps(channel);
+    let logged = logged.or_else(|_| file.signal(times)?.values_f64())?;
+    let times_s = in_seconds(logged, &times.unit);
     let signal = file.signal(channel)?;
     let mut values = signal.values_f64()?;
     for (value, is_valid) in values.iter_mut().zip(signal.validity().unwrap_or_default()) {

@@ -2,6 +2,8 @@
 
 use crate::table::{LIFT, LOWER};
 
+/// Part of the steps that rise in a column of times: one that does not rise everywhere is refused later, with its line.
+const RISES: f64 = 0.9;
 /// Samples in the order of reception.
 #[derive(Debug, Clone, Default)]
 pub struct Series {
@@ -19,6 +21,18 @@ pub fn median_step_s(times_s: &[f64]) -> f64 {
     steps_s.sort_by(f64::total_cmp);
     let middle = steps_s.get(steps_s.len() / 2);
     middle.copied().unwrap_or(f64::INFINITY)
+}
+
+/// Whether values rise from sample to sample, apart from a few faults; NaN is skipped.
+pub fn rises(values: &[f64]) -> bool {
+    let known: Vec<f64> = values
+        .iter()
+        .copied()
+        .filter(|value| value.is_finite())
+        .collect();
+    let steps = known.len().saturating_sub(1);
+    let up = known.windows(2).filter(|pair| pair[1] > pair[0]).count();
+    steps > 0 && up as f64 >= RISES * steps as f64
 }
 
 impl Series {

@@ -14,7 +14,6 @@ use crate::{CampaignError, bus_log, channel_log, columns, csv_log, mdf_log};
 
 pub use crate::bus_log::Signals;
 pub use crate::csv_log::{TextTable, text_table};
-pub use crate::dropout::SHORT_GAP_S as LONGEST_GAP_S;
 pub use crate::time_base::{is_in, is_time_name, is_unit_of_time, unit_size_s, words};
 
 /// A column of a table, or a channel.
@@ -114,6 +113,7 @@ pub fn is_bus(path: &Path) -> bool {
 /// # Errors
 /// One of them cannot be read, the log is not a bus log, or it contains no signal of the description.
 pub fn bus_signals(path: &Path, dbc: &Path) -> Result<Signals, CampaignError> {
+    bus_log::check_known(path)?;
     let description = SourceFile::read_any(dbc)?;
     match Format::of(path) {
         Some(format) => bus_log::signals(&format.source(path)?, format, &description),

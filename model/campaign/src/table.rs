@@ -1,5 +1,6 @@
 //! The numbers of a log by column, independent of the format.
 
+use std::cmp::Ordering;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -9,7 +10,7 @@ use hitch_plant::Channel;
 
 use crate::cut::Cut;
 use crate::dropout::SHORT_GAP_S as LONGEST_GAP_S;
-use crate::series::{Series, median_step_s, values};
+use crate::series::{Series, median_step_s, rises, values};
 use crate::{CampaignError, Run, dropout};
 
 /// Longest step between two samples, s: the valve motion within a longer one is unknown.
@@ -113,6 +114,38 @@ pub struct Table {
     cells: Cells,
     /// Time of the logger's clock at time 0, s; zero if it is unknown.
     origin_s: f64,
+    /// Where the logger's clock was set back or stood still. The times continue after a pause.
+    set_back: Vec<SetBack>,
+    /// How much is kept of a recording that is cut off.
+    cut_off: Option<String>,
+}
+
+/// What a reader of a log should know, and its numbers do not tell.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct LogNotes {
+    /// The steps of its clock.
+    pub steps: Vec<ClockStep>,
+    /// How much is kept of a recording that is cut off.
+    pub cut_off: Option<String>,
+}
+
+/// A row that is not later than the one before it.
+#[derive(Debug, Clone, Copy)]
+struct SetBack {
+    row: usize,
+    /// Time of the row before it, as logged, s.
+    from_s: f64,
+    /// Its time as logged, s.
+    to_s: f64,
+}
+
+/// A step of a logger's clock, which no run contains.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ClockStep {
+    /// The first sample behind it.
+    pub sample: usize,
+    /// What it is, with its line.
+    pub said: String,
 }
 
 impl Table {
@@ -139,6 +172,8 @@ impl Table {
                 rows,
                 cells,
                 origin_s: 0.0,
+                set_back: Vec::new(),
+                cut_off: None,
             }),
         }
     }
@@ -154,20 +189,42 @@ impl Table {
         series: impl Iterator<Item = (&'static str, usize, &'s Series)>,
         cells: Cells,
     ) -> Result<Self, CampaignError> {
-        let times_s = &rows.times_s;
+        let set_back = set_back(&rows.times_s);
+        let pauses: Vec<f64> = set_back.iter().map(SetBack::pause_s).collect();
+        let times_s = &continued(&rows.times_s, &pauses);
         let within_s = median_step_s(times_s) / 2.0;
         let samples = |name, cell, values| Samples { name, cell, values };
         let moved = |(name, cell, series): (_, _, &Series)| {
-            samples(name, cell, values(name, series, times_s, within_s))
+            let series = Series {
+                times_s: continued(&series.times_s, &pauses),
+                ..series.clone()
+            };
+            samples(name, cell, values(name, &series, times_s, within_s))
         };
         let columns = std::iter::once(samples(TIME, time, times_s.clone()));
         let columns = columns.chain(series.map(moved)).collect();
-        Self::new(Arc::clone(source), columns, rows.bytes.clone(), cells)
+        let table = Self::new(Arc::clone(source), columns, rows.bytes.clone(), cells)?;
+        Ok(Self { set_back, ..table })
     }
 
     /// The same table, whose time 0 is that of the logger's clock, s.
     pub fn since(self, origin_s: f64) -> Self {
         Self { origin_s, ..self }
+    }
+
+    /// The same table, of a recording that is cut off behind its last row.
+    pub fn cut_off(self) -> Self {
+        let times_s = self.column(TIME).unwrap_or_default();
+        let lasts_s = times_s.last().zip(times_s.first());
+        let lasts_s = lasts_s.map_or(0.0, |(last_s, first_s)| last_s - first_s);
+        let kept = format!(
+            "the file is cut off: {} samples, {lasts_s:.2} s, are whole",
+            times_s.len()
+        );
+        Self {
+            cut_off: Some(kept),
+            ..self
+        }
     }
 
     /// Whether another table has the same columns, and times that continue: it belongs to the same recording.
@@ -199,6 +256,9 @@ impl Table {
         self.sources
             .extend(sources.map(|(row, source)| (rows + row, Arc::clone(source))));
         self.rows.extend(&next.rows);
+        let later = next.set_back.iter().map(|one| one.after(rows));
+        self.set_back.extend(later);
+        self.cut_off = self.cut_off.or_else(|| next.cut_off.clone());
         for (own, samples) in self.columns.iter_mut().zip(&next.columns) {
             let later = if own.name == TIME { later_s } else { 0.0 };
             own.values
@@ -249,6 +309,15 @@ impl Table {
             rows: kept_of(&self.rows, &stays),
             cells: self.cells,
             origin_s: self.origin_s,
+            // The first row of a part follows none.
+            set_back: (self.set_back.iter())
+                .filter(|one| one.row > before && stays[one.row])
+                .map(|one| SetBack {
+                    row: one.row - before,
+                    ..*one
+                })
+                .collect(),
+            cut_off: self.cut_off.clone(),
         })
     }
 
@@ -303,24 +372,66 @@ impl Table {
     /// # Errors
     /// The first row that is not later than the previous one, or later by more than `longest_s`.
     pub fn check_time(&self, time_s: &[f64], longest_s: f64) -> Result<(), CampaignError> {
-        for (sample, pair) in time_s.windows(2).enumerate() {
-            let (before_s, now_s) = (pair[0], pair[1]);
-            let fault = if now_s < before_s {
-                "goes back"
-            } else if now_s == before_s {
-                "stands still"
-            } else if now_s - before_s > longest_s {
-                "jumps"
-            } else {
-                continue;
-            };
-            let what = format!("time {fault}: {now_s} s after {before_s} s");
-            let mend = format!(
+        let is_wrong = |pair: &[f64]| pair[1] <= pair[0] || pair[1] - pair[0] > longest_s;
+        let Some(before) = time_s.windows(2).position(is_wrong) else {
+            return Ok(());
+        };
+        let (what, from_s, to_s) = self.step(before + 1, time_s);
+        let what = format!("time {what}: {to_s} s after {from_s} s");
+        let mend = match rises(time_s) {
+            true => format!(
                 "{TIME} has to rise from row to row, in steps of at most {LONGEST_STEP_S} s"
-            );
-            return Err(self.error_in(sample + 1, TIME, what, mend));
+            ),
+            false => "export the times with more digits".to_owned(),
+        };
+        Err(self.error_in(before + 1, TIME, what, mend))
+    }
+
+    /// What a reader of the log should know.
+    pub fn notes(&self) -> LogNotes {
+        LogNotes {
+            steps: self.clock_steps(),
+            cut_off: self.cut_off.clone(),
         }
-        Ok(())
+    }
+
+    /// The steps of the logger's clock: back, or ahead by more than a dropout.
+    fn clock_steps(&self) -> Vec<ClockStep> {
+        let times_s = self.column(TIME).unwrap_or_default();
+        let first_s = times_s.first().copied().unwrap_or_default();
+        let usual_s = median_step_s(times_s);
+        let pairs = times_s.windows(2).enumerate();
+        let steps = pairs.filter(|(_, pair)| pair[1] - pair[0] - usual_s > LONGEST_GAP_S);
+        let said = |(before, _)| {
+            let sample = before + 1;
+            let (what, from_s, to_s) = self.step(sample, times_s);
+            let step = format!(
+                "its clock {what} from {:.2} s to {:.2} s",
+                from_s - first_s,
+                to_s - first_s
+            );
+            let said = match self.error_in(sample, TIME, String::new(), "").place {
+                Some(Position { line, .. }) => format!("line {line}: {step}"),
+                None => format!("row {}: {step}", sample + 1),
+            };
+            ClockStep { sample, said }
+        };
+        steps.map(said).collect()
+    }
+
+    /// What the clock does before a row, and its times as logged, s.
+    fn step(&self, row: usize, times_s: &[f64]) -> (&'static str, f64, f64) {
+        let of_row = self.set_back.iter().find(|one| one.row == row);
+        let (from_s, to_s) = match of_row {
+            Some(one) => (one.from_s, one.to_s),
+            None => (times_s[row - 1], times_s[row]),
+        };
+        let what = match to_s.total_cmp(&from_s) {
+            Ordering::Less => "goes back",
+            Ordering::Equal => "stands still",
+            Ordering::Greater => "jumps",
+        };
+        (what, from_s, to_s)
     }
 
     fn error_in(
@@ -339,6 +450,49 @@ impl Table {
             Cells::Nowhere => self.source(row).error(what, mend),
         }
     }
+}
+
+impl SetBack {
+    /// Time by which the rows from it on are moved, so that they follow those before it after a pause, s.
+    fn pause_s(&self) -> f64 {
+        self.from_s - self.to_s + 2.0 * LONGEST_STEP_S
+    }
+
+    /// The same in a table with this many rows above it.
+    fn after(self, rows: usize) -> Self {
+        let row = self.row + rows;
+        Self { row, ..self }
+    }
+}
+
+/// Where times are set back or stand still; nothing in times that rarely rise, which are no times of a run.
+fn set_back(times_s: &[f64]) -> Vec<SetBack> {
+    let pairs = times_s.windows(2).enumerate().filter(|_| rises(times_s));
+    let back = pairs.filter(|(_, pair)| pair[1] <= pair[0]);
+    back.map(|(before, pair)| SetBack {
+        row: before + 1,
+        from_s: pair[0],
+        to_s: pair[1],
+    })
+    .collect()
+}
+
+/// Times that are moved by each of these pauses where they are set back; as they are if that is at other places, s.
+fn continued(times_s: &[f64], pauses_s: &[f64]) -> Vec<f64> {
+    let is_back = |pair: &&[f64]| pair[1] <= pair[0];
+    if times_s.windows(2).filter(is_back).count() != pauses_s.len() {
+        return times_s.to_vec();
+    }
+    let mut pauses_s = pauses_s.iter();
+    let (mut later_s, mut last_s) = (0.0, f64::NEG_INFINITY);
+    let moved = times_s.iter().map(|&time_s| {
+        if time_s <= last_s {
+            later_s += pauses_s.next().copied().unwrap_or_default();
+        }
+        last_s = time_s;
+        time_s + later_s
+    });
+    moved.collect()
 }
 
 fn kept_of<T: Copy>(values: &[T], stays: &[bool]) -> Vec<T> {

@@ -4,10 +4,9 @@
 //! it; the number of samples decides if these do not fit.
 
 use crate::scale::{Scale, spelling};
+use crate::series::rises;
 use crate::table::TIMES as TIME_COLUMN;
 
-/// Part of the steps that rise in a column of times: one that does not rise everywhere is refused later, with its line.
-const RISES: f64 = 0.9;
 /// Part by which the number of samples of a column may fall short of that of its times: dropouts.
 const FITS: f64 = 0.9;
 /// Words of the times.
@@ -53,18 +52,6 @@ impl Seen {
             rises: rises(values),
         }
     }
-}
-
-/// Whether values rise from sample to sample, apart from a few faults; NaN is skipped.
-pub fn rises(values: &[f64]) -> bool {
-    let known: Vec<f64> = values
-        .iter()
-        .copied()
-        .filter(|value| value.is_finite())
-        .collect();
-    let steps = known.len().saturating_sub(1);
-    let up = known.windows(2).filter(|pair| pair[1] > pair[0]).count();
-    steps > 0 && up as f64 >= RISES * steps as f64
 }
 
 /// Whether a name denotes times.

@@ -443,8 +443,16 @@ fn a_log_that_is_no_text_is_called_by_its_kind() {
     }
 }
 
+/// The number of cases of a property: few by day, many with `HITCH_THOROUGH`.
+fn cases(few: u32, many: u32) -> u32 {
+    match std::env::var_os("HITCH_THOROUGH") {
+        Some(_) => many,
+        None => few,
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(256, 16_384), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A campaign with arbitrary changes of its bytes is either read or rejected with a message of one line.
     #[test]

@@ -13,6 +13,7 @@ pub mod dimension;
 pub mod fault;
 pub mod file_kind;
 pub mod input_error;
+pub mod little_endian;
 pub mod naming;
 pub mod source_file;
 pub mod toml_reader;

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::Run;
+use hitch_campaign::{Bench, Run};
 
 use super::loop_::load_kg;
 use crate::error::Error;
 use crate::import::files::columns;
 use crate::import::manifest::{Log, campaign, path_from};
-use crate::import::{Columns, Conditions, Files, dialogue, load_in_name};
+use crate::import::{Columns, Files, dialogue, load_in_name};
 use crate::model_arg::ModelArg;
 use crate::output;
 use crate::text::{shell_word, wrapped};
@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         logs.push(Log {
             file: path_from(&args.out, file),
             mapping: agreed(columns(file)?)?,
-            conditions: conditions(args, file)?,
+            bench: bench(args, file)?,
             then: Vec::new(),
             cuts: Vec::new(),
         });
@@ -97,7 +97,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
 }
 
 /// The test stand of a log.
-fn conditions(args: &Args, file: &Path) -> Result<Conditions, Error> {
+fn bench(args: &Args, file: &Path) -> Result<Bench, Error> {
     if args.bench == "flow" {
         let missing = || {
             let what =
@@ -105,7 +105,7 @@ fn conditions(args: &Args, file: &Path) -> Result<Conditions, Error> {
             Error::Usage(what.to_owned())
         };
         let port_pressure_bar = args.port_pressure.ok_or_else(missing)?;
-        return Ok(Conditions::Flow { port_pressure_bar });
+        return Ok(Bench::Flow { port_pressure_bar });
     }
     let missing = || {
         let name = file.display();
@@ -114,7 +114,7 @@ fn conditions(args: &Args, file: &Path) -> Result<Conditions, Error> {
         ))
     };
     let load_kg = args.load.or_else(|| load_in_name(file));
-    Ok(Conditions::Hitch {
+    Ok(Bench::Hitch {
         load_kg: load_kg.ok_or_else(missing)?,
     })
 }

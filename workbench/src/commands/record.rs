@@ -3,12 +3,13 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::Run;
+use hitch_campaign::{Bench, Run};
 
 use super::loop_::{load_kg, temperature_c};
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
+use crate::run_block::RunBlock;
 use crate::text::wrapped;
 use crate::xcp_tool::{
     BusAddress, CHANNELS, PERIOD_MS, Recording, Row, connect, record, tool_error,
@@ -65,13 +66,17 @@ pub fn run(args: &Args) -> Result<(), Error> {
         )));
     }
     output::create_folder(&args.out)?;
-    let file = free_name(&args.out);
+    let names = (1..).map(|number| format!("run_{number:02}.csv"));
+    let file = output::first_free(names, |name| args.out.join(name).exists());
     output::write_file(&args.out.join(&file), log(&rows).as_bytes())?;
-    let run = format!(
-        "\n[[run]]\nfile = \"{file}\"\nbench = \"hitch\"\nload_kg = {}\noil_temperature_c = {:?}\n",
-        args.load, args.temperature
-    );
-    output::write_file(&manifest, (so_far + &run).as_bytes())?;
+    let run = RunBlock {
+        file: &file,
+        then: &[],
+        bench: Bench::Hitch { load_kg: args.load },
+        oil_temperature_c: Some(args.temperature),
+        span_s: None,
+    };
+    output::write_file(&manifest, format!("{so_far}{run}").as_bytes())?;
     let kept = format!("{} samples of {file} in {}", rows.len(), args.out.display());
     match lost {
         None => output::print(&(wrapped(&kept) + "\n")),
@@ -94,12 +99,6 @@ fn so_far(args: &Args, manifest: &Path) -> Result<String, Error> {
         "format = 1\nname = \"{name}\"\ndescription = \"Recorded from the ECU over XCP\"\nsample_rate_hz = {}\n",
         1_000 / PERIOD_MS
     ))
-}
-
-fn free_name(folder: &Path) -> String {
-    let names = (1..).map(|number| format!("run_{number:02}.csv"));
-    let mut free = names.filter(|name| !folder.join(name).exists());
-    free.next().unwrap_or_default()
 }
 
 fn log(rows: &[Row]) -> String {

@@ -305,6 +305,12 @@ fn no_times(columns: &[LogColumn]) -> Untold {
 
 fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
     const MOST: usize = 16;
+    let words = CHANNELS.iter().find(|words| words.channel == channel);
+    let unusable = columns.iter().find_map(|column| {
+        let fault = column.fault.as_ref()?;
+        let is_it = words.is_some_and(|words| words.names(column));
+        is_it.then(|| format!("\"{}\" cannot be used: {fault}", column.name))
+    });
     let names: Vec<&str> = columns
         .iter()
         .take(MOST)
@@ -312,7 +318,10 @@ fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
         .collect();
     let more = if columns.len() > MOST { ", ..." } else { "" };
     Untold {
-        what: format!("no column was recognised as {channel}; {why}"),
+        what: match unusable {
+            Some(unusable) => format!("{channel} is missing: {unusable}"),
+            None => format!("no column was recognised as {channel}; {why}"),
+        },
         mend: format!(
             "assign it with --map {channel}=\"NAME:UNIT\"; columns: {}{more}",
             names.join(", ")

@@ -1,7 +1,6 @@
 //! Splits a log into runs: where its clock jumps, and a long one where the hitch is at rest. Each starts at rest.
 
-use hitch_campaign::survey::LONGEST_GAP_S;
-use hitch_campaign::{Bench, Run};
+use hitch_campaign::{Bench, ClockStep, Run};
 use hitch_plant::Channel;
 
 /// Current below which no valve opens, A.
@@ -32,21 +31,20 @@ pub struct Cuts {
     pub is_useless: bool,
 }
 
-/// The runs of a log.
+/// The runs of a log with these steps of its clock.
 #[must_use]
-pub fn cuts(run: &Run) -> Cuts {
+pub fn cuts(run: &Run, steps: &[ClockStep]) -> Cuts {
     let first_s = run.time_s.first().copied().unwrap_or_default();
     let after_s = |sample: usize| run.time_s[sample] - first_s;
-    let steps = steps(run);
     let mut cuts = Cuts::default();
+    let split = |step: &ClockStep| format!("{}: the run is split there", step.said);
+    cuts.notes.extend(steps.iter().map(split));
     let mut begin = 0;
-    for end in steps.iter().copied().chain([run.time_s.len()]) {
-        if begin > 0 {
-            let (from_s, to_s) = (after_s(begin - 1), after_s(begin));
-            cuts.notes.push(format!(
-                "its clock jumps from {from_s:.2} s to {to_s:.2} s: the run is split there"
-            ));
-        }
+    for end in steps
+        .iter()
+        .map(|step| step.sample)
+        .chain([run.time_s.len()])
+    {
         // A flow bench has nothing that moves.
         let is_hitch = matches!(run.bench, Bench::Hitch { .. });
         let rest = match is_hitch && begins_in_motion(run, begin, end) {
@@ -103,24 +101,6 @@ fn between_rests(run: &Run, moves: &[(usize, usize)], part: (f64, f64)) -> Vec<(
     runs.iter()
         .map(|(from_s, to_s)| (rounded(*from_s), rounded(*to_s)))
         .collect()
-}
-
-/// The samples behind a gap that is too long for a run.
-fn steps(run: &Run) -> Vec<usize> {
-    let mut steps_s: Vec<f64> = run
-        .time_s
-        .windows(2)
-        .map(|pair| pair[1] - pair[0])
-        .collect();
-    let middle = steps_s.len() / 2;
-    let Some(usual_s) =
-        (!steps_s.is_empty()).then(|| *steps_s.select_nth_unstable_by(middle, f64::total_cmp).1)
-    else {
-        return Vec::new();
-    };
-    let pairs = run.time_s.windows(2).enumerate();
-    let jumps = pairs.filter(|(_, pair)| pair[1] - pair[0] - usual_s > LONGEST_GAP_S);
-    jumps.map(|(before, _)| before + 1).collect()
 }
 
 /// Whether a part begins with an open valve, or moves before one is opened.
@@ -214,15 +194,15 @@ mod tests {
 
     #[test]
     fn a_run_begins_at_rest() {
-        assert_eq!(cuts(&lift(0.0, 0.0)), Cuts::default());
-        let cut = cuts(&lift(5.0, 0.0));
+        assert_eq!(cuts(&lift(0.0, 0.0), &[]), Cuts::default());
+        let cut = cuts(&lift(5.0, 0.0), &[]);
         assert!(
             cut.is_useless && cut.notes[0].contains("no motion begins at rest from 0.00 s"),
             "{cut:?}"
         );
         let mut again = lift(5.0, 0.0);
         again.lift_current_a[200..230].fill(1.5);
-        let cut = cuts(&again);
+        let cut = cuts(&again, &[]);
         // The valve closes at 6 s, which is 1 s after the begin.
         assert_eq!(cut.runs.len(), 1, "{cut:?}");
         assert!((cut.runs[0].0 - 1.0).abs() < 0.03, "{cut:?}");
@@ -230,10 +210,13 @@ mod tests {
 
     #[test]
     fn a_run_ends_where_the_clock_jumps() {
-        let cut = cuts(&lift(0.0, 0.5));
+        let step = ClockStep {
+            sample: 400,
+            said: "line 402: its clock jumps".to_owned(),
+        };
+        let cut = cuts(&lift(0.0, 0.5), &[step]);
         assert_eq!(cut.runs.len(), 1, "the hitch rests behind it: {cut:?}");
         assert!((cut.runs[0].1 - 7.98).abs() < 1e-6, "{cut:?}");
-        assert!(cut.notes[0].contains("its clock jumps"), "{cut:?}");
-        assert_eq!(cuts(&lift(0.0, 0.15)), Cuts::default(), "a dropout");
+        assert!(cut.notes[0].contains("line 402"), "{cut:?}");
     }
 }

@@ -1,16 +1,15 @@
 //! Writes `campaign.toml` of an import.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
-use hitch_campaign::Campaign;
+use hitch_campaign::{Bench, Campaign};
 use hitch_model_file::quoted;
 use hitch_plant::Linkage;
 
 use super::columns::Mapping;
-use super::conditions::Conditions;
 use super::cuts::cuts;
 use crate::error::Error;
+use crate::run_block::RunBlock;
 
 /// A log of a campaign.
 #[derive(Debug, Clone)]
@@ -22,7 +21,7 @@ pub struct Log {
     /// Column assignment; `None` if the default applies.
     pub mapping: Option<Mapping>,
     /// Test stand.
-    pub conditions: Conditions,
+    pub bench: Bench,
     /// Times of its runs, s; empty for a single run of all its samples.
     pub cuts: Vec<(f64, f64)>,
 }
@@ -40,12 +39,12 @@ pub fn campaign(
 ) -> Result<(String, Campaign, Vec<String>), Error> {
     let mut notes = Vec::new();
     let logs = joined(folder, logs, can, linkage, &mut notes)?;
-    let whole = Campaign::uncut(folder, &text(name, can, &logs), linkage)?;
+    let (whole, logged) = Campaign::uncut(folder, &text(name, can, &logs), linkage)?;
     let mut useful = Vec::with_capacity(logs.len());
-    for (mut log, run) in logs.into_iter().zip(&whole.runs) {
-        let found = cuts(run);
+    for ((mut log, run), logged) in logs.into_iter().zip(&whole.runs).zip(&logged) {
+        let found = cuts(run, &logged.steps);
         let said = |note: &String| format!("{}: {note}", run.file);
-        notes.extend(found.notes.iter().map(said));
+        notes.extend(logged.cut_off.iter().chain(&found.notes).map(said));
         log.cuts = found.runs;
         useful.extend((!found.is_useless).then_some(log));
     }
@@ -74,7 +73,7 @@ fn joined(
     let mut joined: Vec<Log> = Vec::new();
     for (log, is_continued) in logs.into_iter().zip(continued) {
         match joined.last_mut() {
-            Some(last) if is_continued && last.conditions == log.conditions => {
+            Some(last) if is_continued && last.bench == log.bench => {
                 notes.push(format!(
                     "{} continues {}: they are joined",
                     log.file, last.file
@@ -100,27 +99,17 @@ fn text(name: &str, can: Option<&str>, logs: &[Log]) -> String {
         text += &lines(common);
     }
     for log in logs {
-        let whole = [(0.0, f64::INFINITY)];
-        let cuts = if log.cuts.is_empty() {
-            &whole[..]
-        } else {
-            &log.cuts[..]
-        };
-        for (from_s, to_s) in cuts {
-            // Writing to a string can't fail.
-            let _ = write!(
-                text,
-                "\n[[run]]\nfile = {}\n{}",
-                quoted(&log.file),
-                log.conditions.lines()
-            );
-            if !log.then.is_empty() {
-                let then: Vec<String> = log.then.iter().map(|file| quoted(file)).collect();
-                let _ = writeln!(text, "then = [{}]", then.join(", "));
-            }
-            if to_s.is_finite() {
-                let _ = write!(text, "from_s = {from_s}\nto_s = {to_s}\n");
-            }
+        let parts = log.cuts.iter().copied().map(Some);
+        let whole = log.cuts.is_empty().then_some(None);
+        for span_s in whole.into_iter().chain(parts) {
+            let block = RunBlock {
+                file: &log.file,
+                then: &log.then,
+                bench: log.bench,
+                oil_temperature_c: None,
+                span_s,
+            };
+            text += &block.to_string();
             if let Some(own) = log.mapping.as_ref().filter(|own| !is_same(own, common)) {
                 text += "[run.columns]\n";
                 text += &lines(own);
@@ -175,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_is_split_where_its_clock_jumps_ahead() {
+    fn a_log_is_split_where_its_clock_was_set() {
         let folder = tempfile::tempdir().unwrap();
         let imported = |jump_s: f64| {
             std::fs::write(folder.path().join("a.csv"), two_lifts(jump_s)).unwrap();
@@ -183,13 +172,17 @@ mod tests {
                 file: "a.csv".to_owned(),
                 then: Vec::new(),
                 mapping: None,
-                conditions: Conditions::Hitch { load_kg: 50.0 },
+                bench: Bench::Hitch { load_kg: 50.0 },
                 cuts: Vec::new(),
             };
             let nominal = hitch_model_file::nominal();
             campaign(folder.path(), "a", None, vec![log], nominal.linkage())
         };
-        for jump_s in [3.0, 3_600.0] {
+        for (jump_s, expected) in [
+            (3.0, "its clock jumps from 9.98 s"),
+            (3_600.0, "its clock jumps from 9.98 s"),
+            (-5.0, "its clock goes back from 9.98 s to 5.00 s"),
+        ] {
             let (_, campaign, notes) = imported(jump_s).unwrap_or_else(|error| panic!("{error}"));
             let lasts_s: Vec<f64> = campaign
                 .runs
@@ -201,12 +194,7 @@ mod tests {
                 lasts_s.iter().all(|lasts_s| (lasts_s - 9.98).abs() < 1e-6),
                 "{lasts_s:?}"
             );
-            assert!(
-                notes[0].contains("its clock jumps from 9.98 s"),
-                "{notes:?}"
-            );
+            assert!(notes[0].contains(expected), "{notes:?}");
         }
-        let said = imported(-5.0).unwrap_err().to_string();
-        assert!(said.contains("time goes back"), "{said}");
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! `hitch import` and the page of `hitch serve` use the same functions; only the dialogue is the command's.
 pub mod columns;
-pub mod conditions;
 pub mod cuts;
 pub mod dialogue;
 mod doubts;
 pub mod files;
+pub mod load;
 pub mod manifest;
 #[cfg(test)]
 mod tests;
@@ -14,5 +14,5 @@ pub mod times;
 pub mod words;
 
 pub use columns::{Kind, Mapping, Taken, Untold};
-pub use conditions::{Conditions, load_in_name};
 pub use files::{Columns, Files};
+pub use load::load_in_name;

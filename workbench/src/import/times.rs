@@ -27,6 +27,8 @@ fn assumed_unit(column: &LogColumn) -> Result<(Option<&'static str>, String), Un
     ];
     /// Since 1970 in s or a part of it.
     const EPOCH: f64 = 1e8;
+    /// Smallest numbers since 1970 in ns, us and ms, with the unit, s.
+    const EPOCH_UNITS: [(f64, f64); 3] = [(1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3)];
     /// Days since 1900 (Excel) and since the year 0 (MATLAB), of the dates from 1980 to 2100.
     const DATES: [std::ops::Range<f64>; 2] = [29_000.0..74_000.0, 723_000.0..768_000.0];
     let words = words(&column.name);
@@ -46,6 +48,15 @@ fn assumed_unit(column: &LogColumn) -> Result<(Option<&'static str>, String), Un
         return Ok((None, "rises from row to row".to_owned()));
     };
     if *first >= EPOCH {
+        let mut sizes = EPOCH_UNITS.into_iter().filter(|(from, _)| first >= from);
+        let size_s = sizes.next().map_or(1.0, |(_, size_s)| size_s);
+        check_run((last - first) * size_s, known.len()).map_err(|no_run| Untold {
+            what: format!(
+                "\"{}\" has no unit, and none can be assumed: counted from 1970 it {no_run}",
+                column.name
+            ),
+            mend: format!("give it, as in --map {TIMES}=\"{}:us\"", column.name),
+        })?;
         let reason = "rises from row to row; assumed to count from 1970: the log states no unit";
         return Ok((None, reason.to_owned()));
     }
@@ -322,6 +333,9 @@ mod tests {
             assert!(reason.contains("assumed"), "{reason}");
         }
         assert_eq!(assumed_unit(&column(1.8e9, 0.02, 900)).unwrap().0, None);
+        // A counter of us that has run for some minutes.
+        let fault = assumed_unit(&column(1e9, 20_000.0, 351)).unwrap_err();
+        assert!(fault.what.contains("counted from 1970"), "{}", fault.what);
         for (step, samples) in [(1.0, 1_200), (1e-9, 900), (700.0, 20)] {
             let fault = assumed_unit(&column(0.0, step, samples)).unwrap_err();
             assert!(fault.what.contains("no unit"), "{}", fault.what);

@@ -18,7 +18,7 @@ use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
 use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
-use crate::bus_log::line::{Line, Word, lines};
+use crate::bus_log::line::{Ending, Line, Word, each_line};
 
 /// First words of lines that contain no event.
 const HEADINGS: [&str; 7] = ["date", "base", "internal", "no", "Begin", "End", "previous"];
@@ -38,20 +38,20 @@ struct Notation {
 }
 
 /// Passes every data frame that `sink` wants to it.
-pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), CampaignError> {
+pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<Ending, CampaignError> {
     let mut notation = Notation {
         radix: 16,
         relative: false,
     };
     let mut last_s = 0.0;
     let mut bytes = [0; MOST_BYTES];
-    for line in lines(source) {
+    each_line(source, |line| {
         let first = line.text(0);
         if first == "base" {
-            notation = of_heading(&line)?;
+            notation = of_heading(line)?;
         }
         if HEADINGS.contains(&first) || first.starts_with("//") {
-            continue;
+            return Ok(());
         }
         let time = line.word(0, "time")?;
         let mut time_s = line.time_s(time, time.text)?;
@@ -60,23 +60,23 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), Campaig
         }
         last_s = time_s;
         let length = match line.text(1) {
-            "CANFD" => flexible(&line, sink, &mut bytes)?,
+            "CANFD" => flexible(line, sink, &mut bytes)?,
             channel if channel.bytes().all(|byte| byte.is_ascii_digit()) => {
-                classical(&line, sink, notation.radix, &mut bytes)?
+                classical(line, sink, notation.radix, &mut bytes)?
             }
             _ => None,
         };
-        if let Some((channel, id, length)) = length {
-            sink.take(&Frame {
+        match length {
+            Some((channel, id, length)) => sink.take(&Frame {
                 time_s,
                 channel,
                 id,
                 data: &bytes[..length],
                 byte: line.byte(),
-            })?;
+            }),
+            None => Ok(()),
         }
-    }
-    Ok(())
+    })
 }
 
 /// `base hex  timestamps absolute`

@@ -12,11 +12,12 @@ use std::io::Read as _;
 
 use flate2::read::ZlibDecoder;
 use hitch_input::file_kind;
+use hitch_input::little_endian::{u16_at, u32_at, u64_at};
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
 use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
-use crate::little_endian::{u16_at, u32_at, u64_at};
+use crate::bus_log::line::Ending;
 
 /// Begin of an object.
 const OBJECT: &[u8] = b"LOBJ";
@@ -38,38 +39,60 @@ type Fault = String;
 ///
 /// # Errors
 /// The file cannot be read, is broken, or a frame is not valid.
-pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), CampaignError> {
+pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<Ending, CampaignError> {
     let bytes = SourceFile::bytes(&source.path)?;
-    let fault = |what: Fault| {
-        let mend = "copy or log it again; python -m can.logconvert FILE.blf FILE.asc converts what is readable";
-        source.error(what, mend)
-    };
+    let fault = |what: Fault| broken(source, what);
     let start = start(&bytes).map_err(fault)?;
     let mut content = Vec::new();
     let mut objects = Objects {
         bytes: &bytes,
         at: start,
     };
+    let mut is_empty = true;
     while let Some(object) = objects.next().map_err(fault)? {
         if object.kind != Object::CONTAINER {
             pass(&object, sink, source)?;
+            is_empty = false;
             continue;
         }
         unpack(object.body(BASE), &mut content).map_err(fault)?;
-        let mut inner = Objects {
-            bytes: &content,
-            at: 0,
-        };
-        while let Some(object) = inner.next().map_err(fault)? {
-            pass(&object, sink, source)?;
-        }
-        let read = inner.at;
+        let read = pass_all(&content, sink, source)?;
+        is_empty &= read == 0;
         content.drain(..read);
     }
-    match objects.at < bytes.len() || !content.iter().all(|&byte| byte == 0) {
-        true => Err(fault("ends in the middle of an object".to_owned())),
-        false => Ok(()),
+    let cut = objects.cut_container();
+    if let Some(container) = cut {
+        // Its frames up to the end of the file are whole; the fault is that end.
+        let _ = unpack(container, &mut content);
+        is_empty &= pass_all(&content, sink, source).is_ok_and(|read| read == 0);
     }
+    let is_whole = objects.at >= bytes.len() && content.iter().all(|&byte| byte == 0);
+    match cut.is_none() && is_whole {
+        true => Ok(Ending::Whole),
+        false if is_empty => Err(fault("ends in the middle of an object".to_owned())),
+        false => Ok(Ending::CutOff),
+    }
+}
+
+fn broken(source: &SourceFile, what: Fault) -> CampaignError {
+    let mend = "copy or log it again; python -m can.logconvert FILE.blf FILE.asc converts what is readable";
+    source.error(what, mend)
+}
+
+/// Passes the frames of the content of a container; returns the number of bytes of its complete objects.
+fn pass_all(
+    content: &[u8],
+    sink: &mut dyn FrameSink,
+    source: &SourceFile,
+) -> Result<usize, CampaignError> {
+    let mut objects = Objects {
+        bytes: content,
+        at: 0,
+    };
+    while let Some(object) = objects.next().map_err(|what| broken(source, what))? {
+        pass(&object, sink, source)?;
+    }
+    Ok(objects.at)
 }
 
 /// Where the objects begin.
@@ -77,15 +100,11 @@ fn start(bytes: &[u8]) -> Result<usize, Fault> {
     if !file_kind::is_blf(bytes) {
         return Err("is not a binary log of a CAN bus: it does not begin with LOGG".to_owned());
     }
-    let header = u32_at(bytes, 4).zip(u64_at(bytes, 16));
-    let Some((start, stated)) = header.filter(|(start, _)| *start as usize <= bytes.len()) else {
-        return Err("ends within its header".to_owned());
-    };
-    // A logger that lost its supply leaves a small number there.
-    if stated > bytes.len() as u64 {
-        return Err(format!("has {} of {stated} bytes", bytes.len()));
+    // The size that the header states is wrong in a file that was not closed.
+    match u32_at(bytes, 4).map(|start| start as usize) {
+        Some(start) if start <= bytes.len() => Ok(start),
+        _ => Err("ends within its header".to_owned()),
     }
-    Ok(start as usize)
 }
 
 /// The objects of a part of the file.
@@ -102,6 +121,14 @@ struct Object<'b> {
 }
 
 impl<'b> Objects<'b> {
+    /// What there is of a container that the end of the file cuts off.
+    fn cut_container(&self) -> Option<&'b [u8]> {
+        let rest = &self.bytes[self.at..];
+        let begin = rest.windows(OBJECT.len()).position(|four| four == OBJECT)?;
+        let is_container = u32_at(rest, begin + 12) == Some(Object::CONTAINER);
+        rest.get(begin + BASE..).filter(|_| is_container)
+    }
+
     /// The next object; `None` if there is no further complete one.
     fn next(&mut self) -> Result<Option<Object<'b>>, Fault> {
         let rest = &self.bytes[self.at..];

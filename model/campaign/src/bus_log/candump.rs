@@ -14,7 +14,7 @@ use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
 use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
-use crate::bus_log::line::{Line, Word, lines};
+use crate::bus_log::line::{Ending, Line, Word, each_line};
 
 /// Digits of an identifier of 11 bits, and of 29.
 const STANDARD_DIGITS: usize = 3;
@@ -23,14 +23,12 @@ const EXTENDED_DIGITS: usize = 8;
 const MOST_CLASSICAL: usize = 8;
 
 /// Passes every data frame that `sink` wants to it.
-pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), CampaignError> {
+pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<Ending, CampaignError> {
     let mut bytes = [0; MOST_BYTES];
-    for line in lines(source) {
-        if let Some(frame) = frame(&line, sink, &mut bytes)? {
-            sink.take(&frame)?;
-        }
-    }
-    Ok(())
+    each_line(source, |line| match frame(line, sink, &mut bytes)? {
+        Some(frame) => sink.take(&frame),
+        None => Ok(()),
+    })
 }
 
 /// The frame of a line; `None` if it contains no data or is not wanted.

@@ -24,10 +24,12 @@ pub struct Line<'a> {
     words: Vec<Word<'a>>,
     /// Byte offset after the last word.
     end: usize,
+    /// Whether the file ends within it.
+    is_last: bool,
 }
 
 /// The non-empty lines of a file.
-pub fn lines(source: &SourceFile) -> impl Iterator<Item = Line<'_>> {
+fn lines(source: &SourceFile) -> impl Iterator<Item = Line<'_>> {
     let mut byte = 0;
     source.text.split_inclusive('\n').filter_map(move |text| {
         let start = byte;
@@ -41,8 +43,40 @@ pub fn lines(source: &SourceFile) -> impl Iterator<Item = Line<'_>> {
             .collect();
         let last = words.last()?;
         let end = last.byte + last.text.len();
-        Some(Line { source, words, end })
+        let is_last = !text.ends_with('\n');
+        Some(Line {
+            source,
+            words,
+            end,
+            is_last,
+        })
     })
+}
+
+/// How the frames of a log end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// With a whole one.
+    Whole,
+    /// In the middle of one, which is left out.
+    CutOff,
+}
+
+/// Calls `take` for each line that is not empty. A fault of a last line without an end is that of a log that was cut off.
+///
+/// # Errors
+/// The first fault of `take` in another line.
+pub fn each_line<'s>(
+    source: &'s SourceFile,
+    mut take: impl FnMut(&Line<'s>) -> Result<(), CampaignError>,
+) -> Result<Ending, CampaignError> {
+    for line in lines(source) {
+        match take(&line) {
+            Err(_) if line.is_last && line.byte() > 0 => return Ok(Ending::CutOff),
+            taken => taken?,
+        }
+    }
+    Ok(Ending::Whole)
 }
 
 impl<'a> Line<'a> {

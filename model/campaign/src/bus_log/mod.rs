@@ -20,6 +20,8 @@ mod settings;
 mod signal;
 mod survey;
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -32,6 +34,7 @@ use crate::table::{Cells, LIFT, LOWER, Table};
 use frame::FrameSink;
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
+use line::Ending;
 use listener::Listener;
 
 /// A log format.
@@ -83,16 +86,34 @@ impl Format {
 /// # Errors
 /// The program that converts it to a supported one.
 pub fn check_known(path: &Path) -> Result<(), CampaignError> {
-    let end = path.extension().and_then(|end| end.to_str());
-    if !end.is_some_and(|end| end.eq_ignore_ascii_case("trc")) {
-        return Ok(());
+    const FORMATS: [(&[u8], &str, &str); 2] = [
+        (
+            b";$FILEVERSION",
+            "is a PCAN trace of a CAN bus (TRC)",
+            "convert it to .asc, for example with python-can: python -m can.logconvert FILE.trc FILE.asc",
+        ),
+        (
+            b"***BUSMASTER",
+            "is a log of a CAN bus by BUSMASTER",
+            "convert it to .asc with BUSMASTER: Tools, Format Converters, LOG to ASC Conversion",
+        ),
+    ];
+    let is_trace = path
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("trc"));
+    let mut begin = Vec::new();
+    if let Ok(file) = File::open(path) {
+        // A file that cannot be read is refused by its reader.
+        let _ = file.take(64).read_to_end(&mut begin);
     }
-    let mend = "convert it to .asc, for example with python-can: python -m can.logconvert FILE.trc FILE.asc";
-    Err(InputError::of_file(
-        path,
-        "is a PCAN trace of a CAN bus (TRC)",
-        mend,
-    ))
+    let begin = begin.trim_ascii_start();
+    let mut formats = FORMATS.into_iter().enumerate();
+    let found =
+        formats.find(|(index, (mark, ..))| begin.starts_with(mark) || (is_trace && *index == 0));
+    match found {
+        Some((_, (_, what, mend))) => Err(InputError::of_file(path, what, mend)),
+        None => Ok(()),
+    }
 }
 
 /// Reads a bus log.
@@ -105,7 +126,7 @@ pub fn read(
     settings: &BusSettings,
 ) -> Result<Table, CampaignError> {
     let mut listener = settings.listener(source);
-    read_frames(source, format, &mut listener)?;
+    let ending = read_frames(source, format, &mut listener)?;
     let rows = required(source, &listener, settings, LIFT)?;
     required(source, &listener, settings, LOWER)?;
     let series = listener.series();
@@ -115,7 +136,11 @@ pub fn read(
         Format::Blf | Format::Mdf => Cells::Nowhere,
     };
     let table = Table::of_series(source, (0, rows), series, cells)?;
-    Ok(table.since(listener.origin_s()))
+    let table = table.since(listener.origin_s());
+    Ok(match ending {
+        Ending::Whole => table,
+        Ending::CutOff => table.cut_off(),
+    })
 }
 
 /// Passes the frames of a log to a sink.
@@ -123,13 +148,13 @@ fn read_frames(
     source: &SourceFile,
     format: Format,
     sink: &mut dyn FrameSink,
-) -> Result<(), CampaignError> {
+) -> Result<Ending, CampaignError> {
     match format {
         Format::Candump => candump::read(source, sink),
         Format::Asc => asc::read(source, sink),
         Format::Blf => blf::read(source, sink),
-        Format::Mdf => mdf_frames::read(source, sink),
-        Format::Table => frame_table::read(source, sink),
+        Format::Mdf => mdf_frames::read(source, sink).map(|()| Ending::Whole),
+        Format::Table => frame_table::read(source, sink).map(|()| Ending::Whole),
     }
 }
 

@@ -1,14 +1,16 @@
 //! The description of a text table: dialect, shape and times. The survey, the readers and their messages follow from it.
 
 use csv::StringRecord;
+use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
 use crate::csv_log::clock::{DateOrder, Times, is_clock, is_date};
 use crate::csv_log::dialect::{Decimals, Header, is_missing, is_sample, rows};
 use crate::csv_log::lvm::{self, Steps};
+use crate::series::rises;
 use crate::table::cell_error;
-use crate::time_base::{Seen, bases, is_time_name, notes, rises};
+use crate::time_base::{Seen, bases, is_time_name, notes};
 
 /// Number of rows that are examined.
 const EXAMINED_ROWS: usize = 1_000;
@@ -102,16 +104,8 @@ impl<'s> Layout<'s> {
     /// The rows below the header, each with its byte offset and its time.
     fn records(&self) -> impl Iterator<Item = (usize, StringRecord)> {
         let rows = rows(&self.source.text, self.header.data_byte, self.header.mark);
-        rows.enumerate()
-            .map(|(index, (byte, row))| match self.steps {
-                Some(Steps { first_s, step_s }) => {
-                    let time = (first_s + step_s * index as f64).to_string();
-                    let others = row.iter().skip(1);
-                    let cells = std::iter::once(time.as_str()).chain(others);
-                    (byte, cells.collect())
-                }
-                None => (byte, row),
-            })
+        let mut segments = lvm::Segments::of(&self.source.text, self.steps);
+        rows.filter_map(move |(byte, row)| Some((byte, segments.sample(row)?)))
     }
 
     /// Whether each row has one more cell than the header, the first of which names the row.
@@ -240,16 +234,18 @@ impl<'s> Layout<'s> {
                 record: &record,
                 shift: self.shift,
             };
-            let found = match self.misfit(byte, &record) {
-                Some(misfit) => Some(misfit),
-                None => take(row)?,
+            let no_time = self.word_for_time(row);
+            let found = match (self.misfit(byte, &record), no_time) {
+                (Some(misfit), _) => Some(misfit),
+                (None, Some(column)) => Some(self.no_time(row, column, samples > 0)),
+                (None, None) => take(row)?,
             };
             match (found, below.fault.take()) {
                 (None, Some(before)) => return Err(before),
                 (None, None) => samples += 1,
                 (Some(found), before) => {
                     below.lines += 1;
-                    only_remarks &= !is_sample(&record);
+                    only_remarks &= !is_sample(&record) || no_time.is_some();
                     below.fault = before.or(Some(found));
                 }
             }
@@ -258,6 +254,30 @@ impl<'s> Layout<'s> {
             Some(fault) if samples == 0 || (below.lines > 1 && !only_remarks) => Err(fault),
             _ => Ok(below),
         }
+    }
+
+    /// The column of times in which a row has a word, if it has no time: a line below the samples may begin like that.
+    fn word_for_time(&self, row: Row<'_>) -> Option<usize> {
+        let bases = self.bases.iter().enumerate();
+        let times = bases.filter(|(column, base)| **base == Some(*column));
+        let mut filled = times.filter(|(column, _)| !row.cell(*column).is_empty());
+        let (column, _) = filled.next()?;
+        let is_word =
+            is_missing(row.cell(column)) && filled.all(|(other, _)| is_missing(row.cell(other)));
+        is_word.then_some(column)
+    }
+
+    /// The fault of a row without a time, below others or not.
+    pub fn no_time(&self, row: Row<'_>, column: usize, is_below: bool) -> CampaignError {
+        let as_before = if is_below {
+            " in the form of those above"
+        } else {
+            ""
+        };
+        let what = format!("{} is not a time{as_before}", quote(row.cell(column)));
+        let mend = "every row needs a number, a date with a time of day (21.11.2026 10:00:00.020, \
+                    2026-11-21T10:00:00Z, 21-Nov-2026 10:00:00), or a time of day";
+        self.fault(row.byte, column, what, mend)
     }
 
     /// The fault of a row that does not have the cells of the header.

@@ -11,8 +11,12 @@
 //! X_Value       I     p     Comment
 //! ```
 
+use csv::StringRecord;
+
 use crate::csv_log::dialect::{Decimals, Header, MARKS, rows};
 
+/// Begin of a file.
+const MARK: &str = "LabVIEW Measurement";
 /// Name of the columns of times.
 const X: &str = "X_Value";
 
@@ -27,7 +31,7 @@ pub struct Steps {
 
 /// The header; `None` for another format.
 pub fn header(text: &str) -> Option<Header> {
-    text.starts_with("LabVIEW Measurement").then_some(())?;
+    text.starts_with(MARK).then_some(())?;
     let byte = text.find(&format!("\n{X}"))? + 1;
     let mark = *text.as_bytes().get(byte + X.len())?;
     MARKS.contains(&mark).then_some(())?;
@@ -47,6 +51,49 @@ pub fn header(text: &str) -> Option<Header> {
         }
     }
     Some(header)
+}
+
+/// The samples of a file, below the first of its headers: each recording of a file has one.
+#[derive(Debug)]
+pub struct Segments {
+    steps: Option<Steps>,
+    /// Whether the file is of LabVIEW, and the next row is within a header.
+    is_lvm: bool,
+    is_header: bool,
+    /// Number of samples since the last header.
+    samples: u32,
+}
+
+impl Segments {
+    /// Of a file with these times, if they are not in a column.
+    pub fn of(text: &str, steps: Option<Steps>) -> Self {
+        Self {
+            steps,
+            is_lvm: text.starts_with(MARK),
+            is_header: false,
+            samples: 0,
+        }
+    }
+
+    /// A row with its time; `None` in a header.
+    pub fn sample(&mut self, row: StringRecord) -> Option<StringRecord> {
+        let first = row.get(0).filter(|_| self.is_lvm).unwrap_or_default();
+        if first == "Channels" || self.is_header {
+            self.is_header = first != X;
+            self.samples = 0;
+            if let (Some(steps), "X0") = (&mut self.steps, first) {
+                steps.first_s = Decimals::ANY.number(row.get(1)?)?;
+            }
+            return None;
+        }
+        let Some(Steps { first_s, step_s }) = self.steps else {
+            return Some(row);
+        };
+        let time = (first_s + step_s * f64::from(self.samples)).to_string();
+        self.samples += u32::from(!row.iter().all(str::is_empty));
+        let others = row.iter().skip(1);
+        Some(std::iter::once(time.as_str()).chain(others).collect())
+    }
 }
 
 /// The times of a file without a column of them; `None` if it has one, or channels with different times.

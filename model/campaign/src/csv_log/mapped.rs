@@ -162,14 +162,11 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let Some(time_s) = time.times.read(cell) else {
-                let as_before = match time.times_s.is_empty() {
-                    true => "",
-                    false => " in the form of those above",
-                };
-                let what = format!("{} is not a time{as_before}", quote(cell));
-                let mend = "every row needs a number, a date with a time of day (21.11.2026 10:00:00.020, \
-                            2026-11-21T10:00:00Z, 21-Nov-2026 10:00:00), or a time of day";
-                return Ok(Some(layout.fault(row.byte, time.index, what, mend)));
+                return Ok(Some(layout.no_time(
+                    row,
+                    time.index,
+                    !time.times_s.is_empty(),
+                )));
             };
             for own in own().collect::<Vec<usize>>() {
                 let index = self.columns[own].index;

@@ -6,10 +6,13 @@
 //! log(:,1), log(:,2), ...                a matrix, along its longer dimension
 //! heben.Time, heben.Data                 a time series: the channel `heben` with its own times
 //! out.time, out.signals(k).values        "structure with time" of Simulink, by the labels of its signals
+//! exp.X(i).Data, exp.Y(k).Data           a recording of dSPACE, by the names inside `Y(k)`; `Y(k).XIndex` is i
 //! ```
 
-use super::mat::{Value, variables};
+use hitch_mat_file::{Value, variables};
+
 use super::{Fault, NumberColumn};
+use crate::time_base::unit_size_s;
 
 /// Most columns of a matrix: larger ones are no logs.
 const MOST_COLUMNS: usize = 64;
@@ -58,7 +61,7 @@ fn add(name: &str, value: &Value, columns: &mut Vec<NumberColumn>) {
 }
 
 fn add_struct(name: &str, fields: &Fields, columns: &mut Vec<NumberColumn>) {
-    if let Some(timed) = time_series(name, fields) {
+    if let Some(timed) = of_dspace(fields).or_else(|| time_series(name, fields)) {
         columns.extend(timed);
         return;
     }
@@ -84,6 +87,37 @@ fn time_series(name: &str, fields: &Fields) -> Option<Vec<NumberColumn>> {
     for column in &mut columns {
         column.times = Some(times.to_vec());
     }
+    (!columns.is_empty()).then_some(columns)
+}
+
+/// The columns of a recording of dSPACE; `None` for other structs.
+fn of_dspace(fields: &Fields) -> Option<Vec<NumberColumn>> {
+    let (Value::Structs(axes), Value::Structs(signals)) =
+        (field(fields, &["x"])?, field(fields, &["y"])?)
+    else {
+        return None;
+    };
+    let data = |fields: &Fields| vector(field(fields, &["data"])?).map(<[f64]>::to_vec);
+    let signal = |fields: &Vec<(String, Value)>| {
+        let values = data(fields)?;
+        let index = match field(fields, &["xindex"]) {
+            Some(Value::Numbers { values, .. }) => *values.first()? as usize,
+            _ => 1,
+        };
+        let axis = axes.get(index.checked_sub(1)?)?;
+        let unit_of_time = unit(axis);
+        let size_s = unit_of_time.as_deref().map_or(1.0, unit_size_s);
+        let times_s = data(axis)?.into_iter().map(|time| time * size_s);
+        let times_s = times_s.collect::<Vec<f64>>();
+        (times_s.len() == values.len()).then_some(NumberColumn {
+            name: text(fields, &["name"])?,
+            unit: unit(fields),
+            values,
+            times: Some(times_s),
+            states_times: unit_of_time.is_some(),
+        })
+    };
+    let columns: Vec<NumberColumn> = signals.iter().filter_map(signal).collect();
     (!columns.is_empty()).then_some(columns)
 }
 

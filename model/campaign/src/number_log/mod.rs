@@ -2,7 +2,6 @@
 //!
 //! A column either has its own times (a time series of MATLAB), or those of the column that is assigned to `time_s`.
 
-mod mat;
 mod mat_columns;
 mod parquet;
 
@@ -33,6 +32,8 @@ pub struct NumberColumn {
     values: Vec<f64>,
     /// Its own times as logged; `None` if it has those of another column.
     times: Option<Vec<f64>>,
+    /// Whether the file states the unit of its own times, which are in s.
+    states_times: bool,
 }
 
 /// A file, read completely.
@@ -63,7 +64,7 @@ impl NumberLog {
         }
         let bytes = SourceFile::bytes(path)?;
         let columns = match end.as_str() {
-            "mat" if file_kind::is_mat(&bytes) => mat_columns::read(&bytes),
+            "mat" if hitch_mat_file::is_one(&bytes) => mat_columns::read(&bytes),
             "parquet" if file_kind::is_parquet(&bytes) => parquet::read(bytes),
             _ => return Ok(None),
         };
@@ -102,10 +103,12 @@ impl NumberLog {
                 Survey::Table { columns, notes }
             }
             false => {
+                let mut columns = self.columns.iter().filter(is_timed);
+                let is_assumed = columns.any(|column| !column.states_times);
                 let note = "assumed s: the times of its series, which state no unit";
                 Survey::Channels {
                     columns: timed,
-                    notes: vec![note.to_owned()],
+                    notes: is_assumed.then(|| note.to_owned()).into_iter().collect(),
                 }
             }
         }

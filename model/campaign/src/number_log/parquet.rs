@@ -86,7 +86,7 @@ fn columns(bytes: Vec<u8>) -> Result<Vec<NumberColumn>> {
             name: cell.name,
             unit: cell.unit.or_else(|| per_s.map(|_| "s".to_owned())),
             values,
-            times: None,
+            ..NumberColumn::default()
         });
     }
     Ok(columns)

@@ -68,8 +68,16 @@ fn is_read_or_refused(folder: &TempDir) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// The number of cases of a property: few by day, many with `HITCH_THOROUGH`.
+fn cases(few: u32, many: u32) -> u32 {
+    match std::env::var_os("HITCH_THOROUGH") {
+        Some(_) => many,
+        None => few,
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(64, 16_384), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_damaged_log_is_read_or_refused(
@@ -94,6 +102,23 @@ proptest! {
         let [log, description] = ["a.log", "a.dbc"].map(|name| folder.path().join(name));
         if let Err(error) = bus_signals(&log, &description) {
             prop_assert_eq!(error.to_string().lines().count(), 1, "{}", error);
+        }
+    }
+}
+
+#[test]
+fn of_a_log_that_is_cut_off_the_whole_frames_are_kept() {
+    for (name, log) in [("a.asc", asc(20, "absolute")), ("a.log", candump(20))] {
+        let manifest = MANIFEST.replace("a.log", name);
+        let line = log.trim_end().rfind('\n').unwrap() + 1;
+        for length in line + 2..log.trim_end().len() {
+            let files = [
+                ("campaign.toml", manifest.clone()),
+                (name, log[..length].to_owned()),
+            ];
+            let folder = damaged(&files, 1, &[]);
+            let campaign = Campaign::load(folder.path()).unwrap_or_else(|error| panic!("{error}"));
+            assert!(campaign.runs[0].time_s.len() >= 19, "{name} {length}");
         }
     }
 }

@@ -10,6 +10,7 @@ use hitch_plant::Channel;
 use proptest::prelude::*;
 use tempfile::TempDir;
 
+mod clock;
 mod groups;
 mod shape;
 
@@ -418,8 +419,16 @@ fn a_run_may_have_columns_of_its_own() {
     assert_same("own", &loaded("bench.csv", text.as_bytes(), columns), 1e-12);
 }
 
+/// The number of cases of a property: few by day, many with `HITCH_THOROUGH`.
+fn cases(few: u32, many: u32) -> u32 {
+    match std::env::var_os("HITCH_THOROUGH") {
+        Some(_) => many,
+        None => few,
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(128, 16_384), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A log with arbitrary changes of its bytes is either read or rejected with a message of one line.
     #[test]

@@ -26,6 +26,10 @@ fn rows_have_the_cells_of_the_header_or_names() {
             format!("{head}\n{}", rows.replace('\n', ",,\n")),
         ),
         (
+            "statistics below",
+            format!("{text}\nMean,0.5,0.1,20,60\nMax,1,1,40,90\n\nEnd\n"),
+        ),
+        (
             "lines below",
             format!("{text}\nEnd of measurement\nSamples: 200\n"),
         ),
@@ -138,6 +142,20 @@ fn labview_writes_times_as_a_column_or_as_a_step() {
         };
         head + &samples().into_iter().map(row).collect::<String>()
     };
+    // A second recording in the file has a header of its own, and continues.
+    for is_column in [true, false] {
+        let text = lvm(is_column);
+        let (begin, header) = (
+            text.find("Channels").unwrap(),
+            text.find("Comment\n").unwrap() + 8,
+        );
+        let half = header + text[header..].match_indices('\n').nth(99).unwrap().0 + 1;
+        let second = text[begin..header].replace("\t0.5", "\t1.5");
+        let segments = format!("{}\n{second}{}", &text[..half], &text[half..]);
+        let [one, two] =
+            [&text, &segments].map(|text| loaded("bench.lvm", text.as_bytes(), columns));
+        assert_same_times("two headers", &two, &one);
+    }
     let column = loaded("bench.lvm", lvm(true).as_bytes(), columns);
     assert_same("a column", &column, 1e-12);
     let mut step = loaded("bench.lvm", lvm(false).as_bytes(), columns);
@@ -146,4 +164,11 @@ fn labview_writes_times_as_a_column_or_as_a_step() {
         *time_s -= 0.5;
     }
     assert_same("a step", &step, 1e-9);
+}
+
+fn assert_same_times(case: &str, run: &hitch_campaign::Run, expected: &hitch_campaign::Run) {
+    assert_eq!(run.lift_current_a, expected.lift_current_a, "{case}");
+    let pairs = run.time_s.iter().zip(&expected.time_s);
+    assert!(pairs.clone().all(|(a, b)| (a - b).abs() < 1e-9), "{case}");
+    assert_eq!(run.time_s.len(), expected.time_s.len(), "{case}");
 }

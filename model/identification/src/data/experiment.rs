@@ -6,7 +6,7 @@ use hitch_campaign::{Bench, Campaign, Run};
 use hitch_plant::simulation::{Trace, simulate_in};
 use hitch_plant::solver::dynamic::Steps;
 use hitch_plant::{
-    AddedEffect, Channel, Currents, Dynamics, HitchRig, Model, Plant, Rig, SizeResponse, units,
+    AddedEffect, Channel, Currents, Dynamics, Model, Plant, Rig, SizeResponse, units,
 };
 use rayon::prelude::*;
 
@@ -356,15 +356,13 @@ impl ReadyRun {
     /// The rig with the load error of `nuisance`.
     #[must_use]
     pub fn rig(&self, nuisance: Nuisance) -> Rig {
-        match self.bench {
-            Bench::Hitch { load_kg } => Rig::Hitch(HitchRig {
+        let bench = match self.bench {
+            Bench::Hitch { load_kg } => Bench::Hitch {
                 load_kg: load_kg * (1.0 + nuisance.load),
-                start_angle_rad: self.start_angle_deg.to_radians(),
-            }),
-            Bench::Flow { port_pressure_bar } => Rig::Flow {
-                port_pressure_pa: units::pa_from_bar(port_pressure_bar),
             },
-        }
+            flow @ Bench::Flow { .. } => flow,
+        };
+        bench.rig(self.start_angle_deg.to_radians())
     }
 
     /// One sigma of the cylinder pressure of a piston that dry friction holds, bar: the force that it carries is anywhere

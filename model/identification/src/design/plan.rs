@@ -2,7 +2,7 @@
 
 use hitch_campaign::{Bench, Run};
 use hitch_plant::simulation::simulate;
-use hitch_plant::{Channel, Currents, HitchRig, Model, Rig, units};
+use hitch_plant::{Channel, Currents, HitchRig, Model, Rig};
 
 /// Time at rest before the first current rises, s, so that the run starts from an idle plant.
 const REST_S: f64 = 0.5;
@@ -156,9 +156,7 @@ impl RunPlan {
                     start_angle_rad: low_rad + start * (high_rad - low_rad),
                 })
             }
-            Stand::Flow { port_pressure_bar } => Rig::Flow {
-                port_pressure_pa: units::pa_from_bar(port_pressure_bar),
-            },
+            Stand::Flow { port_pressure_bar } => Bench::Flow { port_pressure_bar }.rig(0.0),
         }
     }
 

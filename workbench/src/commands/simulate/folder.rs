@@ -1,16 +1,16 @@
 //! A folder of simulated runs that is a campaign.
 
 use std::collections::HashSet;
-use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::{Bench, Campaign, Run};
+use hitch_campaign::{Campaign, Run};
 use hitch_model_file::quoted;
 use hitch_plant::Channel;
 
 use crate::error::Error;
 use crate::output;
+use crate::run_block::RunBlock;
 
 /// A new campaign, with the runs so far.
 pub struct Folder {
@@ -48,22 +48,17 @@ impl Folder {
     /// # Errors
     /// If it cannot be written.
     pub fn add(&mut self, run: &Run, log: &str) -> Result<(), Error> {
-        let name = free_name(&run.file, &mut self.names);
+        let name = name_of_log(&run.file, &mut self.names);
         output::create_folder(&self.path)?;
         output::write_file(&self.path.join(&name), log.as_bytes())?;
-        let (bench, condition) = match run.bench {
-            Bench::Hitch { load_kg } => ("hitch", format!("load_kg = {load_kg:?}")),
-            Bench::Flow { port_pressure_bar } => {
-                ("flow", format!("port_pressure_bar = {port_pressure_bar:?}"))
-            }
+        let block = RunBlock {
+            file: &name,
+            then: &[],
+            bench: run.bench,
+            oil_temperature_c: Some(run.oil_temperature_c),
+            span_s: None,
         };
-        // Writing to a string cannot fail.
-        let _ = write!(
-            self.runs,
-            "\n[[run]]\nfile = {}\nbench = \"{bench}\"\n{condition}\noil_temperature_c = {:?}\n",
-            quoted(&name),
-            run.oil_temperature_c
-        );
+        self.runs += &block.to_string();
         Ok(())
     }
 
@@ -99,14 +94,13 @@ fn noise(campaign: &Campaign) -> String {
 }
 
 /// A name for the log of a run: that of its file, with a number if it is taken.
-fn free_name(label: &str, taken: &mut HashSet<String>) -> String {
+fn name_of_log(label: &str, taken: &mut HashSet<String>) -> String {
     let file = Path::new(label).file_name().unwrap_or_default();
     let file = file.to_string_lossy();
     let stem = stem(&file);
     let names = (2..).map(|number| format!("{stem}_{number}.csv"));
-    let mut names = std::iter::once(format!("{stem}.csv")).chain(names);
-    let free = names.find(|name| taken.insert(name.clone()));
-    free.unwrap_or_default()
+    let names = std::iter::once(format!("{stem}.csv")).chain(names);
+    output::first_free(names, |name| !taken.insert(name.to_owned()))
 }
 
 /// The name of a run without the extension of its file and the time span behind it.
@@ -124,7 +118,7 @@ fn stem(file: &str) -> &str {
 mod tests {
     use std::collections::HashSet;
 
-    use super::free_name;
+    use super::name_of_log;
 
     #[test]
     fn every_run_has_a_file_of_its_own() {
@@ -135,7 +129,7 @@ mod tests {
             "monday.log 12 to 47.5 s",
             "monday.log from 80 s",
         ];
-        let names = labels.map(|label| free_name(label, &mut taken));
+        let names = labels.map(|label| name_of_log(label, &mut taken));
         assert_eq!(
             names,
             [

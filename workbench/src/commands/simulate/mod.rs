@@ -5,8 +5,7 @@ mod trace;
 use std::path::{Path, PathBuf};
 
 use hitch_campaign::{Bench, Campaign, Run};
-use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, HitchRig, Model, Rig};
+use hitch_plant::{Channel, Model};
 
 use crate::error::Error;
 use crate::model_arg::ModelArg;
@@ -75,7 +74,7 @@ impl Args {
         let model = self.model.load()?;
         let log = Run::read(path, self.bench(&model), self.oil_temperature)?;
         let progress = Progress::start(format!("simulating {}", log.file));
-        let rig = rig(&log, self.start_angle_rad(&model, &log)?);
+        let rig = log.bench.rig(self.start_angle_rad(&model, &log)?);
         let text = simulated(&model, rig, &log);
         drop(progress);
         output::write_file(&self.out, text.as_bytes())
@@ -106,7 +105,7 @@ impl Args {
         let progress = Progress::start("simulating");
         for run in runs {
             progress.say(format!("simulating {}", run.file));
-            let rig = rig(run, self.start_angle_rad(model, run)?);
+            let rig = run.bench.rig(self.start_angle_rad(model, run)?);
             folder.add(run, &simulated(model, rig, run))?;
         }
         Ok(())
@@ -147,19 +146,6 @@ fn logged_start_deg(log: &Run) -> Option<f64> {
         .filter(|deg| deg.is_finite());
     let first: Vec<f64> = known.take(START_SAMPLES).copied().collect();
     (!first.is_empty()).then(|| first.iter().sum::<f64>() / first.len() as f64)
-}
-
-/// The test stand of a run.
-fn rig(run: &Run, start_angle_rad: f64) -> Rig {
-    match run.bench {
-        Bench::Flow { port_pressure_bar } => Rig::Flow {
-            port_pressure_pa: pa_from_bar(port_pressure_bar),
-        },
-        Bench::Hitch { load_kg } => Rig::Hitch(HitchRig {
-            load_kg,
-            start_angle_rad,
-        }),
-    }
 }
 
 /// Parses the number of an option and checks its range.

@@ -1,6 +1,6 @@
 // @ts-check
 /** Opens files: sends them to the server, shows the proposed assignment, and opens the campaign. */
-import { byId } from "./dom.js";
+import { byId, element } from "./dom.js";
 import { faultLines } from "./fault.js";
 import { assignment, drawProposal } from "./mapping.js";
 import { post, send } from "./server.js";
@@ -38,11 +38,11 @@ export function connectFiles(opened) {
     byId("files-fault").replaceChildren();
     working("Reading the files");
     try {
-      await post("upload/open", { upload, ...assignment() });
+      const { notes } = /** @type {{ notes: string[] }} */ (await post("upload/open", { upload, ...assignment() }));
       clear();
       await opened();
       byId("files-title").focus();
-      byId("files-status").textContent = "The campaign is open.";
+      byId("files-status").replaceChildren("The campaign is open.", ...notes.map((note) => element("p", { class: "note" }, `${note}.`)));
     } catch (error) {
       fail(error);
     } finally {

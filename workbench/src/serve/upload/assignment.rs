@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use hitch_campaign::{Campaign, CampaignError};
+use hitch_campaign::{Bench, Campaign, CampaignError};
 use hitch_plant::Linkage;
 use serde::Deserialize;
 
 use super::proposal::{Group, MANIFEST, Proposal};
 use crate::error::Error;
 use crate::import::manifest::{Log, campaign, path_from};
-use crate::import::{Conditions, Kind, Mapping};
+use crate::import::{Kind, Mapping};
 
 /// The edited assignment; its lists are those of the proposal.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -39,7 +39,7 @@ enum Stand {
 }
 
 impl Assignment {
-    /// Reads the campaign.
+    /// Reads the campaign. Beside it, which logs are joined, split or cut; one line each.
     ///
     /// # Errors
     /// If the assignment or a file is invalid.
@@ -48,9 +48,11 @@ impl Assignment {
         folder: &Path,
         proposal: &Proposal,
         linkage: &Linkage,
-    ) -> Result<Campaign, Error> {
+    ) -> Result<(Campaign, Vec<String>), Error> {
         let (files, groups) = match proposal {
-            Proposal::Campaign { .. } => return Ok(Campaign::load_with(folder, linkage)?),
+            Proposal::Campaign { .. } => {
+                return Ok((Campaign::load_with(folder, linkage)?, Vec::new()));
+            }
             Proposal::Logs { files, groups } => (files, groups),
         };
         if groups.len() != self.groups.len() || files.logs.len() != self.logs.len() {
@@ -74,14 +76,14 @@ impl Assignment {
             logs.push(Log {
                 file: path_from(folder, file),
                 mapping,
-                conditions: stand.conditions(file)?,
+                bench: stand.bench(file)?,
                 then: Vec::new(),
                 cuts: Vec::new(),
             });
         }
         let can = files.can(folder, signals.as_ref());
         let read = campaign(folder, self.name(), can.as_deref(), logs, linkage);
-        read.map(|(_, campaign, _)| campaign)
+        read.map(|(_, campaign, notes)| (campaign, notes))
             .map_err(|error| unplaced(folder, error))
     }
 
@@ -117,14 +119,14 @@ fn mapping(group: &Group, given: &[Source]) -> Result<Mapping, Error> {
 }
 
 impl Stand {
-    fn conditions(self, log: &Path) -> Result<Conditions, Error> {
+    fn bench(self, log: &Path) -> Result<Bench, Error> {
         let missing = |what: &str, mend: &str| CampaignError::of_file(log, what, mend);
         Ok(match self {
-            Self::Hitch { load_kg } => Conditions::Hitch {
+            Self::Hitch { load_kg } => Bench::Hitch {
                 load_kg: load_kg
                     .ok_or_else(|| missing("the load at the hitch is missing", "enter it in kg"))?,
             },
-            Self::Flow { port_pressure_bar } => Conditions::Flow {
+            Self::Flow { port_pressure_bar } => Bench::Flow {
                 port_pressure_bar: port_pressure_bar.ok_or_else(|| {
                     missing(
                         "the port pressure of the flow bench is missing",

@@ -131,7 +131,7 @@ struct Open {
     assignment: Assignment,
 }
 
-/// Opens the campaign in the session, and deletes the files.
+/// Opens the campaign in the session, and deletes the files. Answers which logs are joined, split or cut.
 async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let session = find(&sessions, &wanted.session)?;
     let upload = upload(&session, &wanted.upload)?;
@@ -151,17 +151,18 @@ async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
         let campaign = wanted
             .assignment
             .campaign(from.path(), proposal, model.linkage());
-        let campaign = campaign.map_err(|error| named(&from, error))?;
-        Ok::<_, Refusal>(Subject::new(&campaign, model))
+        let (campaign, notes) = campaign.map_err(|error| named(&from, error))?;
+        Ok::<_, Refusal>((Subject::new(&campaign, model), notes))
     });
-    let subject = Arc::new(subject.await??);
+    let (subject, notes) = subject.await??;
+    let subject = Arc::new(subject);
     let mut session = lock(&session);
     if session.job.is_some() {
         return Err(busy());
     }
     session.open(subject);
     session.upload.take_if(|known| known.id == upload.id);
-    Ok(Json(json!({})))
+    Ok(Json(json!({ "notes": notes })))
 }
 
 fn upload(session: &Shared, id: &str) -> Result<Arc<Upload>, Refusal> {

@@ -1,14 +1,11 @@
-//! The format of MAT files of versions 5 to 7, of which 7 compresses its variables.
-//!
-//! A file is a header of 128 bytes and a sequence of elements; an element has a type, a length and its bytes. Source:
-//! MathWorks, "MAT-File Format", sections on level 5 files.
+//! Files of level 5: a header of 128 bytes and a sequence of elements; an element has a type, a length and its bytes.
 
 use std::io::Read as _;
 
 use flate2::read::ZlibDecoder;
+use hitch_input::little_endian::{u16_at, u32_at};
 
-use super::MOST_NUMBERS;
-use crate::little_endian::{u16_at, u32_at};
+use crate::{MOST_NUMBERS, Value};
 
 /// Bytes of the header.
 const HEADER: usize = 128;
@@ -16,26 +13,6 @@ const HEADER: usize = 128;
 const LARGEST: u64 = 512 << 20;
 /// Deepest nesting of structs.
 const DEEPEST: usize = 16;
-
-/// A value of a variable or of a field.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Value {
-    /// Numbers, column by column.
-    Numbers {
-        /// Rows, and columns of all further dimensions together.
-        size: [usize; 2],
-        /// The values.
-        values: Vec<f64>,
-    },
-    /// Characters.
-    Text(String),
-    /// Structs with the same fields: one, or an array of them.
-    Structs(Vec<Vec<(String, Value)>>),
-    /// An object of a class, which only MATLAB can read.
-    Object,
-    /// Anything else.
-    Other,
-}
 
 /// The variables of a file by name.
 ///

@@ -1,34 +1,6 @@
-//! The test stand of an imported log.
+//! The load of an imported log.
 
 use std::path::Path;
-
-/// Bench of a log, with its load or pressure.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Conditions {
-    /// At the hitch.
-    Hitch {
-        /// Load, kg.
-        load_kg: f64,
-    },
-    /// On the flow bench.
-    Flow {
-        /// Pressure at the cylinder port, bar.
-        port_pressure_bar: f64,
-    },
-}
-
-impl Conditions {
-    /// The lines of a run that state them.
-    #[must_use]
-    pub fn lines(self) -> String {
-        match self {
-            Self::Hitch { load_kg } => format!("bench = \"hitch\"\nload_kg = {load_kg}\n"),
-            Self::Flow { port_pressure_bar } => {
-                format!("bench = \"flow\"\nport_pressure_bar = {port_pressure_bar}\n")
-            }
-        }
-    }
-}
 
 /// The load in the name of a log: 150 kg in `lift_150kg.csv`.
 #[must_use]

@@ -1,0 +1,49 @@
+//! MAT files of MATLAB as values: level 5 (versions 5 to 7, of which 7 compresses its variables), and level 4.
+//!
+//! Source: MathWorks, "MAT-File Format".
+#![forbid(unsafe_code)]
+
+mod level_4;
+mod level_5;
+
+use hitch_input::file_kind;
+
+/// Most numbers of a file: as text they would fill the longest file that is read.
+const MOST_NUMBERS: usize = 64 << 20;
+
+/// A value of a variable or of a field.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// Numbers, column by column.
+    Numbers {
+        /// Rows, and columns of all further dimensions together.
+        size: [usize; 2],
+        /// The values.
+        values: Vec<f64>,
+    },
+    /// Characters.
+    Text(String),
+    /// Structs with the same fields: one, or an array of them.
+    Structs(Vec<Vec<(String, Value)>>),
+    /// An object of a class, which only MATLAB can read.
+    Object,
+    /// Anything else.
+    Other,
+}
+
+/// Whether a file that begins with `bytes` is of one of the levels. Level 4 has no mark: its first variable has to fit.
+#[must_use]
+pub fn is_one(bytes: &[u8]) -> bool {
+    file_kind::is_mat(bytes) || level_4::is_one(bytes)
+}
+
+/// The variables of a file by name.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn variables(bytes: &[u8]) -> Result<Vec<(String, Value)>, String> {
+    match file_kind::is_mat(bytes) {
+        true => level_5::variables(bytes),
+        false => level_4::variables(bytes),
+    }
+}
