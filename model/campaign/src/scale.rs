@@ -2,8 +2,9 @@
 
 use std::sync::LazyLock;
 
-use hitch_input::Unit;
+use hitch_input::Dimension;
 use hitch_input::input_error::quote;
+use hitch_input::written_unit::{above_air, parsed, spelling};
 use hitch_plant::{Channel, Linkage, Model};
 
 use crate::table::{Column, OIL_TEMPERATURE, TIME};
@@ -11,52 +12,6 @@ use crate::table::{Column, OIL_TEMPERATURE, TIME};
 /// Kelvin at 0 degrees Celsius.
 const ZERO_C_K: f64 = 273.15;
 
-/// Units with their alternative spellings in lower case: of tools, and in German.
-const SPELLINGS: &[(&str, &[&str])] = &[
-    ("deg", &["°", "deg", "degree", "degrees", "grad"]),
-    ("rad", &["radian", "radians"]),
-    ("degC", &["c", "°c", "degc", "deg c", "deg_c", "celsius"]),
-    ("degF", &["f", "°f", "degf"]),
-    ("l/min", &["lpm", "l/min", "ltr/min", "l min-1"]),
-    ("l/s", &["l/s"]),
-    ("gpm", &["us gpm", "gal/min"]),
-    ("A", &["amp", "amps", "ampere", "a"]),
-    ("mA", &["ma"]),
-    ("bar", &["bar", "barg", "bar(g)"]),
-    ("bara", &["bar(a)", "bar abs"]),
-    ("psia", &["psi(a)", "psi abs"]),
-    ("kPaa", &["kpa(a)", "kpa abs"]),
-    ("kPa", &["kpa"]),
-    ("Pa", &["pa"]),
-    ("psi", &["psig"]),
-    ("s", &["sec", "sek", "seconds"]),
-    ("V", &["volt"]),
-    ("min", &["minute", "minutes", "minuten"]),
-    ("h", &["hours", "stunden"]),
-    ("ms", &["msec", "millisekunden"]),
-    ("us", &["usec"]),
-    ("d", &["day", "days", "tage", "datenum"]),
-    ("%", &["percent", "prozent"]),
-];
-
-/// Units that formulas do not have, each as a multiple of one that they have.
-const MULTIPLES: &[(&str, f64, &str)] = &[
-    ("psi", 6_894.757_293_168, "Pa"),
-    ("hPa", 100.0, "Pa"),
-    ("mbar", 1e-3, "bar"),
-    // US gallon.
-    ("gpm", 3.785_411_784, "l/min"),
-    ("ml/min", 1e-3, "l/min"),
-    ("uA", 1e-6, "A"),
-    ("us", 1e-6, "s"),
-    ("µs", 1e-6, "s"),
-    ("ns", 1e-9, "s"),
-    ("h", 3_600.0, "s"),
-    ("d", 86_400.0, "s"),
-];
-
-/// Units of absolute pressures, each with that of the pressure above air.
-const ABSOLUTE: [(&str, &str); 3] = [("bara", "bar"), ("psia", "psi"), ("kPaa", "kPa")];
 /// Pressure of air, bar: the standard atmosphere.
 const AIR_BAR: f64 = 1.013_25;
 
@@ -112,7 +67,7 @@ impl Scale {
             Some((own, wanted)) if own.dimension == wanted.dimension => {
                 line(own.si / wanted.si, 0.0)
             }
-            Some((own, _)) if is_angle(column) && Some(own.dimension) == dimension("m") => {
+            Some((own, _)) if is_angle(column) && own.dimension == Dimension::LENGTH => {
                 Ok(Self::Travel { metres: own.si })
             }
             _ if unit == "%" => Err(format!(
@@ -148,12 +103,6 @@ impl Scale {
     }
 }
 
-/// The unit above air of a unit of absolute pressures.
-pub fn above_air(unit: &str) -> Option<&'static str> {
-    let found = ABSOLUTE.iter().find(|(absolute, _)| *absolute == unit);
-    found.map(|(_, above_air)| *above_air)
-}
-
 /// Whether a text is a unit of a column's quantity; volts are accepted for all.
 pub fn is_unit_of(unit: &str, column: &Column) -> bool {
     spelling(unit) == "V" || Scale::of(unit, column).is_ok()
@@ -167,35 +116,6 @@ pub fn is_unit(text: &str) -> bool {
         "V" | "mV" | "degF" | "%" | "-" | "1" | "iso" | "clock"
     );
     is_known || above_air(unit).is_some() || (!unit.is_empty() && parsed(unit).is_some())
-}
-
-/// A unit as formulas write it.
-pub fn spelling(unit: &str) -> &str {
-    let unit = unit.trim();
-    let lower = unit.to_lowercase();
-    // Capital letters distinguish milli from mega: a known unit is not changed.
-    if parsed(unit).is_some() {
-        return unit;
-    }
-    let mut known = SPELLINGS.iter();
-    let known = known.find(|(_, others)| others.contains(&lower.as_str()));
-    known.map_or(unit, |(usual, _)| usual)
-}
-
-fn parsed(unit: &str) -> Option<Unit> {
-    let multiple = MULTIPLES.iter().find(|(name, ..)| *name == unit);
-    match multiple {
-        Some((_, factor, base)) => Unit::parse(base).ok().map(|base| Unit {
-            si: base.si * factor,
-            dimension: base.dimension,
-        }),
-        None if unit.is_empty() => None,
-        None => Unit::parse(unit).ok(),
-    }
-}
-
-fn dimension(unit: &str) -> Option<hitch_input::Dimension> {
-    parsed(unit).map(|unit| unit.dimension)
 }
 
 fn is_angle(column: &Column) -> bool {

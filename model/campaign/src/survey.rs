@@ -4,11 +4,12 @@ use std::path::Path;
 
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
+use hitch_input::written_unit::{above_air, spelling};
 
 use crate::bus_log::Format;
 use crate::mdf_log::MdfFile;
 use crate::number_log::NumberLog;
-use crate::scale::{above_air, is_unit_of, spelling};
+use crate::scale::is_unit_of;
 use crate::table::{COLUMNS, TIME, column};
 use crate::{CampaignError, bus_log, channel_log, columns, csv_log, mdf_log};
 

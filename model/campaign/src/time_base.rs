@@ -3,7 +3,9 @@
 //! A log may have a column of times for each rate. A column belongs to the times whose name it shares, else to those before
 //! it; the number of samples decides if these do not fit.
 
-use crate::scale::{Scale, spelling};
+use hitch_input::written_unit::spelling;
+
+use crate::scale::Scale;
 use crate::series::rises;
 use crate::table::TIMES as TIME_COLUMN;
 

@@ -4,7 +4,8 @@
 //! * [`input_error`]: faults: what, where, and a suggested correction;
 //! * [`toml_reader`]: checked access to TOML;
 //! * [`naming`]: messages about unknown names;
-//! * [`mod@unit`] and [`dimension`]: units of measurement and their syntax.
+//! * [`mod@unit`] and [`dimension`]: units of measurement and their syntax;
+//! * [`written_unit`]: units as logs and other tools write them.
 //!
 //! Depends on no other crate of the project.
 #![forbid(unsafe_code)]
@@ -18,6 +19,7 @@ pub mod naming;
 pub mod source_file;
 pub mod toml_reader;
 pub mod unit;
+pub mod written_unit;
 
 pub use dimension::Dimension;
 pub use fault::Fault;
