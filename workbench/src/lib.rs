@@ -32,6 +32,7 @@ pub mod serve;
 pub mod slcan_server;
 pub mod status_line;
 pub mod text;
+pub mod tolerance_args;
 pub mod tuning;
 pub mod valve_survey;
 pub mod web;

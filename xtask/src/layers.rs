@@ -118,6 +118,7 @@ const CRATES: [Layers; 9] = [
                 "baseline_arg",
                 "effect_arg",
                 "search_args",
+                "tolerance_args",
                 "input_stream",
                 "heat_table",
                 "web",

@@ -7,6 +7,7 @@ use hitch_identification::adequacy::lack_of_fit::cells;
 use hitch_identification::adequacy::unsuitable_base::{is_unsuitable, wrong_share};
 use hitch_identification::base::{BaseFit, fit_base_model};
 use hitch_identification::constants::parameter::{SCALARS, SENSORS};
+use hitch_identification::constants::tolerances::Tolerances;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
@@ -103,7 +104,7 @@ fn fitted_with(
         Family::Dynamic => few_runs(campaign(&case)),
     };
     let experiment = Experiment::new(&measured, &declared);
-    let fit = fit_base_model(&experiment, &declared, &|_| {});
+    let fit = fit_base_model(&experiment, &declared, &Tolerances::default(), &|_| {});
     (truth, fit)
 }
 

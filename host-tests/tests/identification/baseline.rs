@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use hitch_campaign::Campaign;
+use hitch_identification::constants::tolerances::Tolerances;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::limit::Limit;
 use hitch_identification::data::problem::Problem;
@@ -144,9 +145,10 @@ fn a_data_sheet_becomes_the_model_of_a_machine() {
     );
     assert!((low..=high).contains(&truth));
 
-    let exact = ["cylinder.bore_mm".to_owned()];
+    let mut own = Tolerances::default();
+    own.hold("cylinder.bore_mm");
     let held = Options {
-        exact: &exact,
+        tolerances: Some(&own),
         ..options
     };
     let found = explain_with(Problem::new(&experiment, &sheet), held, &|_| {});

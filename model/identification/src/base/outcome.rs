@@ -7,8 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::base::descent::descend;
 use crate::base::normal::{BaseProblem, Normal, Point, RunColumns, with_effects_of};
 use crate::constants::fitted::{CurvePoint, DETERMINED, Fitted, FittedConstant, MODEL_ERROR};
-use crate::constants::parameter::{Parameter, SENSORS, parameters};
+use crate::constants::parameter::{Parameter, SENSORS};
 use crate::constants::prior::Prior;
+use crate::constants::tolerances::Tolerances;
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::estimation::fit::{COARSE, Fit, evaluate_weighted, refine};
@@ -43,12 +44,17 @@ pub struct BaseFit {
     pub curves: Vec<CurvePoint>,
 }
 
-/// Fits the constants of a model to a campaign; `say` receives the current task.
+/// Fits the constants of a model to a campaign, within a user's own tolerances; `say` receives the current task.
 #[must_use]
-pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&str)) -> BaseFit {
-    let mut parameters = parameters(declared.constants());
+pub fn fit_base_model(
+    experiment: &Experiment,
+    declared: &Model,
+    own: &Tolerances,
+    say: &dyn Fn(&str),
+) -> BaseFit {
+    let mut parameters = own.unknowns(declared.constants());
     parameters.extend(SENSORS.iter().map(Parameter::Sensor));
-    let prior = Prior::new(declared.constants(), &parameters);
+    let prior = Prior::new(declared.constants(), &parameters, own);
     let before = fit_base(Problem::new(experiment, declared));
     let inseparable: Vec<bool> = parameters.iter().map(|one| !one.is_separable()).collect();
     let without_sensors: Vec<bool> = parameters

@@ -5,8 +5,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::constants::correction::corrected;
 use crate::constants::fitted::{CurvePoint, DETERMINED, Fitted, FittedConstant, MODEL_ERROR};
-use crate::constants::parameter::{Parameter, parameters};
+use crate::constants::parameter::Parameter;
 use crate::constants::prior::Prior;
+use crate::constants::tolerances::Tolerances;
 
 /// Smallest kept variance of a direction, in variances of a single constant. The errors of neighbouring points of a
 /// flow curve are correlated: a curve of any number of points has about five directions above this variance.
@@ -16,24 +17,18 @@ const SMALLEST_VARIANCE: f64 = 0.02;
 #[derive(Debug)]
 pub struct Directions {
     parameters: Vec<Parameter>,
+    prior: Prior,
     /// One column per direction: the errors of the parameters at one sigma.
     columns: DMatrix<f64>,
 }
 
 impl Directions {
-    /// The directions of a model's constants.
+    /// The directions of a model's constants, with a user's own tolerances.
     #[must_use]
-    pub fn new(declared: &Constants) -> Self {
-        Self::except(declared, &[])
-    }
-
-    /// The directions of a model's constants but for some that are exact, by their names in a model file.
-    #[must_use]
-    pub fn except(declared: &Constants, exact: &[String]) -> Self {
-        let mut parameters = parameters(declared);
-        parameters.retain(|one| one.name().is_none_or(|name| !exact.contains(&name)));
-        let prior = Prior::new(declared, &parameters);
-        let sigma = DVector::from_vec(prior.sigma);
+    pub fn new(declared: &Constants, own: &Tolerances) -> Self {
+        let parameters = own.unknowns(declared);
+        let prior = Prior::new(declared, &parameters, own);
+        let sigma = DVector::from_column_slice(&prior.sigma);
         let size = parameters.len();
         let correlation = DMatrix::from_fn(size, size, |i, j| {
             prior.covariance[(i, j)] / (sigma[i] * sigma[j])
@@ -54,6 +49,7 @@ impl Directions {
                 false => DMatrix::from_columns(&columns),
             },
             parameters,
+            prior,
         }
     }
 
@@ -83,7 +79,7 @@ impl Directions {
         share: f64,
         covariance: &DMatrix<f64>,
     ) -> (Vec<FittedConstant>, Vec<CurvePoint>) {
-        let prior = Prior::new(declared.constants(), &self.parameters);
+        let prior = &self.prior;
         let spread = &self.columns * covariance * self.columns.transpose();
         let own: Vec<f64> = (0..prior.sigma.len())
             .map(|k| spread[(k, k)].sqrt().hypot(MODEL_ERROR))
@@ -107,7 +103,7 @@ impl Directions {
             theta: &self.errors(errors),
             sigma: &sigma,
             determined: &determined,
-            prior: &prior,
+            prior,
         };
         (fitted.constants(), fitted.curves())
     }
@@ -124,15 +120,14 @@ impl Directions {
 #[cfg(test)]
 mod tests {
     use super::Directions;
-    use crate::constants::parameter::parameters;
-    use crate::constants::prior::Prior;
+    use crate::constants::tolerances::Tolerances;
 
     /// The directions reproduce the prior covariance up to the small variances that are left out.
     #[test]
     fn directions_reproduce_the_prior() {
         for model in [hitch_model_file::nominal(), hitch_model_file::dynamic()] {
-            let directions = Directions::new(model.constants());
-            let prior = Prior::new(model.constants(), &parameters(model.constants()));
+            let directions = Directions::new(model.constants(), &Tolerances::default());
+            let prior = &directions.prior;
             let product = &directions.columns * directions.columns.transpose();
             println!("{} directions of {}", directions.len(), prior.sigma.len());
             assert!(directions.len() < prior.sigma.len());
@@ -151,7 +146,7 @@ mod tests {
     #[test]
     fn no_error_leaves_the_constants_alone() {
         let model = hitch_model_file::nominal();
-        let directions = Directions::new(model.constants());
+        let directions = Directions::new(model.constants(), &Tolerances::default());
         let same = directions.corrected(&model, &vec![0.0; directions.len()]);
         assert_eq!(same.expect("a linkage").constants(), model.constants());
     }

@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 
 use crate::constants::directions::Directions;
 use crate::constants::fitted::{CurvePoint, FittedConstant};
+use crate::constants::tolerances::Tolerances;
 
 /// Bound of a coordinate, in prior sigmas: a larger error is outside the tolerances of data sheets, or the accuracy of any
 /// model.
@@ -27,13 +28,13 @@ impl FreeConstants {
     /// The declared constants, free to change within their tolerances.
     #[must_use]
     pub fn of(declared: &Model) -> Self {
-        Self::except(declared, &[])
+        Self::with(declared, &Tolerances::default())
     }
 
-    /// The same but for some that are exact, by their names in a model file (`table.key`).
+    /// The same with a user's own tolerances.
     #[must_use]
-    pub fn except(declared: &Model, exact: &[String]) -> Self {
-        let directions = Arc::new(Directions::except(declared.constants(), exact));
+    pub fn with(declared: &Model, own: &Tolerances) -> Self {
+        let directions = Arc::new(Directions::new(declared.constants(), own));
         Self {
             errors: vec![0.0; directions.len()],
             share: 1.0,

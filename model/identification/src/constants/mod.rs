@@ -10,3 +10,4 @@ pub mod fitted;
 pub mod free;
 pub mod parameter;
 pub mod prior;
+pub mod tolerances;

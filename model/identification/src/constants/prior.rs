@@ -3,7 +3,9 @@
 use hitch_plant::Constants;
 use nalgebra::{DMatrix, DVector};
 
+use crate::constants::free::FARTHEST_SIGMAS;
 use crate::constants::parameter::{Parameter, THRESHOLD_SIGMA_A};
+use crate::constants::tolerances::Tolerances;
 
 /// Standard deviation of the error that all points of a flow curve share, and of the one that varies over the current:
 /// 20 % together.
@@ -15,9 +17,6 @@ const REACH: f64 = 0.3;
 
 /// Standard deviation of a single point: reading error of a printed curve.
 const SINGLE: f64 = 0.02;
-
-/// Bound on an unknown, in sigmas.
-const BOUND: f64 = 4.0;
 
 /// Gaussian prior about the declared values.
 #[derive(Debug, Clone)]
@@ -31,11 +30,13 @@ pub struct Prior {
 }
 
 impl Prior {
-    /// The prior of a model's unknowns.
-    pub fn new(declared: &Constants, parameters: &[Parameter]) -> Self {
+    /// The prior of a model's unknowns, with a user's own tolerances.
+    pub fn new(declared: &Constants, parameters: &[Parameter], own: &Tolerances) -> Self {
         let size = parameters.len();
+        let factor = |one: &Parameter| own.own(one).map_or(1.0, |sigma| sigma / usual_sigma(*one));
+        let factors: Vec<f64> = parameters.iter().map(factor).collect();
         let covariance = DMatrix::from_fn(size, size, |i, j| {
-            covariance(declared, parameters[i], parameters[j], i == j)
+            factors[i] * factors[j] * covariance(declared, parameters[i], parameters[j], i == j)
         });
         let sigma = (0..size).map(|k| covariance[(k, k)].sqrt()).collect();
         let root = covariance.clone().cholesky();
@@ -62,22 +63,29 @@ impl Prior {
     /// The nearest values within the bounds.
     pub fn bounded(&self, theta: &DVector<f64>) -> DVector<f64> {
         DVector::from_fn(theta.len(), |k, _| {
-            let farthest = BOUND * self.sigma[k];
+            let farthest = FARTHEST_SIGMAS * self.sigma[k];
             theta[k].clamp(-farthest, farthest)
         })
     }
 
     /// Whether an unknown is at its bound.
     pub fn is_at_an_end(&self, theta: &DVector<f64>, unknown: usize) -> bool {
-        theta[unknown].abs() >= 0.999 * BOUND * self.sigma[unknown]
+        theta[unknown].abs() >= 0.999 * FARTHEST_SIGMAS * self.sigma[unknown]
+    }
+}
+
+/// One sigma of an unknown by the tolerances of data sheets.
+fn usual_sigma(parameter: Parameter) -> f64 {
+    match parameter {
+        Parameter::Scalar(scalar) => scalar.tolerance,
+        Parameter::Sensor(sensor) => sensor.tolerance,
+        Parameter::Threshold(_) => THRESHOLD_SIGMA_A,
+        Parameter::Flow(..) => SHARED.hypot(CHANGING).hypot(SINGLE),
     }
 }
 
 fn covariance(declared: &Constants, a: Parameter, b: Parameter, same: bool) -> f64 {
     match (a, b) {
-        (Parameter::Scalar(scalar), _) if same => scalar.tolerance.powi(2),
-        (Parameter::Sensor(sensor), _) if same => sensor.tolerance.powi(2),
-        (Parameter::Threshold(_), _) if same => THRESHOLD_SIGMA_A.powi(2),
         (Parameter::Flow(valve, i), Parameter::Flow(other, j)) if valve == other => {
             let curve = &valve.of(declared).curve;
             let currents_a = curve.currents_a();
@@ -86,6 +94,7 @@ fn covariance(declared: &Constants, a: Parameter, b: Parameter, same: bool) -> f
             let single = if same { SINGLE * SINGLE } else { 0.0 };
             SHARED * SHARED + CHANGING * CHANGING * (-0.5 * apart * apart).exp() + single
         }
+        _ if same => usual_sigma(a).powi(2),
         _ => 0.0,
     }
 }

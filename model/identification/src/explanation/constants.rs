@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::constants::fitted::{CurvePoint, FittedConstant};
 use crate::constants::free::FreeConstants;
+use crate::constants::tolerances::Tolerances;
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, fit, refine};
@@ -96,8 +97,10 @@ pub(crate) fn search_with_constants(
     };
     if options.constants == Accuracy::DataSheet {
         progress("the constants of the model");
+        let usual = Tolerances::default();
+        let tolerances = options.tolerances.unwrap_or(&usual);
         let (corrected, free) = search(Estimate {
-            constants: Some(FreeConstants::except(problem.model, options.exact)),
+            constants: Some(FreeConstants::with(problem.model, tolerances)),
             ..before.estimate.clone()
         });
         return Searched {

@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use hitch_plant::Effect;
 use rayon::prelude::*;
 
+use crate::constants::tolerances::Tolerances;
 use crate::data::clocks::Clocks;
 use crate::data::limit::Limit;
 use crate::data::problem::Problem;
@@ -55,7 +56,7 @@ pub enum Accuracy {
     /// a baseline they are as they were on it.
     #[default]
     Unknown,
-    /// That of a data sheet: they are fitted together with the effects, but for those in [`Options::exact`].
+    /// That of a data sheet: they are fitted together with the effects, within [`Options::tolerances`].
     DataSheet,
 }
 
@@ -66,8 +67,8 @@ pub struct Options<'a> {
     pub changes: bool,
     /// How accurate the constants of the model are.
     pub constants: Accuracy,
-    /// Constants of a data sheet that are exact, by their names in a model file (`table.key`).
-    pub exact: &'a [String],
+    /// Own tolerances of the constants of a data sheet; `None` for the usual ones.
+    pub tolerances: Option<&'a Tolerances>,
     /// Until when the search goes on; then it returns its best result so far.
     pub limit: Limit<'a>,
     /// Callback with each fit that becomes the best one during the search.
@@ -79,7 +80,7 @@ impl Default for Options<'_> {
         Self {
             changes: true,
             constants: Accuracy::default(),
-            exact: &[],
+            tolerances: None,
             limit: Limit::default(),
             improved: &|_| {},
         }

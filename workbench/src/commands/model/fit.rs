@@ -13,6 +13,7 @@ use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
 use crate::report::fit_page;
+use crate::tolerance_args::ToleranceArgs;
 
 /// Arguments of `hitch model fit`.
 #[derive(Debug, clap::Args)]
@@ -29,6 +30,8 @@ pub struct Args {
     /// Write the fitted model to this file
     #[arg(long, value_name = "FILE.toml")]
     out: PathBuf,
+    #[command(flatten)]
+    tolerances: ToleranceArgs,
     #[command(flatten)]
     json: JsonArg,
     /// Write a report to this file: flow curves and constants with intervals, runs before and after
@@ -49,11 +52,11 @@ pub fn run(args: &Args) -> Result<(), Error> {
         args.json.target(),
     ];
     let outputs = Outputs::check(wanted, &inputs)?;
-    let model = args.model.load()?;
+    let (tolerances, model) = args.tolerances.applied_to(args.model.load()?)?;
     let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
-    let mut fit = fit_base_model(&experiment, &model, &|what| progress.say(what));
+    let mut fit = fit_base_model(&experiment, &model, &tolerances, &|what| progress.say(what));
     drop(progress);
     fit.model.name = output::stem(&args.out);
     output::write_file(&args.out, hitch_model_file::to_toml(&fit.model).as_bytes())?;
