@@ -3,9 +3,11 @@
 use std::time::Instant;
 
 use hitch_effects::find;
+use hitch_identification::adequacy::signal::Signal;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::design::alternative::Replacement;
+use hitch_identification::design::exploration::exploring;
 use hitch_identification::design::feasibility::is_feasible;
 use hitch_identification::design::levels::Levels;
 use hitch_identification::design::manoeuvre::TEMPLATES;
@@ -405,6 +407,31 @@ fn manoeuvres_can_be_carried_out() {
             }
             let end = run.currents(run.duration_s());
             assert_eq!(end, Currents::default(), "{name} leaves a valve open");
+        }
+    }
+}
+
+/// The manoeuvre for an unexplained error uses the valve that is off, whatever the error depends on.
+#[test]
+fn an_unexplained_error_is_explored_where_it_is() {
+    for (hidden, valve, motion) in [
+        ("lower-threshold-shift", "lowering current", "lowering"),
+        ("lift-threshold-shift", "lift", "lifting"),
+    ] {
+        let lab = Lab::new(Family::Steady, usual(hidden), ALL, &steps());
+        let experiment = lab.experiment();
+        let problem = Problem::new(&experiment, &lab.model);
+        let fit = evaluate(problem, Estimate::new(&experiment, Vec::new()));
+        for depends_on in [[Signal::Load], [Signal::Flow], [Signal::RockerAngle]] {
+            let next = exploring(problem, &fit, &depends_on);
+            println!("{hidden}, {depends_on:?}: {next}");
+            let uses = next.manoeuvre.contains(valve) || next.manoeuvre.contains(motion);
+            let uses =
+                uses || next.manoeuvre.contains("lower from") || next.manoeuvre.contains("creep");
+            assert!(
+                uses && next.why.contains(&format!("while {motion}")),
+                "{next}"
+            );
         }
     }
 }

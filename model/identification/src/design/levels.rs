@@ -69,6 +69,12 @@ impl ValveRange {
         self.rounded(current_a.clamp(0.0, self.last_a))
     }
 
+    /// The opening at a current, A: 0 at the threshold, 1 at full opening.
+    #[must_use]
+    pub fn opening(self, current_a: f64) -> f64 {
+        (current_a - self.threshold_a) / (self.full_a - self.threshold_a).max(f64::MIN_POSITIVE)
+    }
+
     /// Difference of two currents whose openings differ by this, A.
     #[must_use]
     pub fn span_a(self, openings: f64) -> f64 {

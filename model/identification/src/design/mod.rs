@@ -10,6 +10,7 @@
 //! * [`sensor`]: an additional sensor, if no manoeuvre helps.
 
 pub mod alternative;
+pub mod error_map;
 pub mod exploration;
 pub mod feasibility;
 pub mod levels;
