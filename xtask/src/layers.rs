@@ -36,6 +36,7 @@ const CRATES: [Layers; 9] = [
             &["sensing"],
             &["operator"],
             &["reference"],
+            &["ride"],
             &["estimation"],
             &["adaptation"],
             &["motion"],
