@@ -11,3 +11,4 @@ pub mod coupling;
 pub mod figures;
 pub mod pass;
 pub mod rig;
+pub mod transport;
