@@ -6,7 +6,7 @@ use hitch_field::body::BodyConstants;
 use hitch_field::terrain::RoughnessConstants;
 use hitch_quantities::Calibration;
 use hitch_quantities::units::{MicrometrePerSecond, Millisecond, PerMille};
-use host_tests::field_rig::transport::{Ride, RideComparison, class_c, damping_with};
+use hitch_workbench::field_loop::transport::{Ride, RideComparison, class_c, damping_with};
 
 /// A change of the calibration that takes a part away.
 type Ablation = (&'static str, fn(&mut Calibration));
@@ -40,7 +40,12 @@ fn main() {
                     roughness: roughness.clone(),
                     speed_m_s: km_h / 3.6,
                 };
-                let found = RideComparison::of(&ride, &damping_with(|_| {}), seeds);
+                let found = RideComparison::of(
+                    &hitch_model_file::dynamic(),
+                    &ride,
+                    &damping_with(|_| {}),
+                    seeds,
+                );
                 println!("{tractor}, class {class}, {km_h} km/h: {found}");
             }
         }
@@ -51,7 +56,12 @@ fn main() {
         speed_m_s: 20.0 / 3.6,
     };
     for (name, change) in ABLATIONS {
-        let found = RideComparison::of(&ride, &damping_with(change), seeds);
+        let found = RideComparison::of(
+            &hitch_model_file::dynamic(),
+            &ride,
+            &damping_with(change),
+            seeds,
+        );
         println!("4.5 t, class C, 20 km/h, {name}: {found}");
     }
 }

@@ -134,6 +134,7 @@ const CRATES: [Layers; 9] = [
                 "slcan_server",
                 "xcp_tool",
             ],
+            &["field_loop"],
             &["ecu", "paper", "rebuild", "tuning"],
             &["status_line", "report"],
             &["serve"],

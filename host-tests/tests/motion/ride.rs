@@ -3,8 +3,8 @@
 use hitch_field::body::BodyConstants;
 use hitch_quantities::units::MilliBar;
 use hitch_quantities::{Inputs, Reason};
-use host_tests::field_rig::rig::RAISED_DEG;
-use host_tests::field_rig::transport::{
+use hitch_workbench::field_loop::rig::RAISED_DEG;
+use hitch_workbench::field_loop::transport::{
     Ride, RideComparison, RideSample, TransportRig, class_c, damping_with,
 };
 use host_tests::seeds::cases;
@@ -27,7 +27,12 @@ fn damping_takes_a_quarter_off_the_pitch_and_a_fifth_off_the_pressure_peaks() {
             roughness: class_c(),
             speed_m_s: km_h / 3.6,
         };
-        let found = RideComparison::of(&ride, &damping_with(|_| {}), cases(3, 20) as u64);
+        let found = RideComparison::of(
+            &hitch_model_file::dynamic(),
+            &ride,
+            &damping_with(|_| {}),
+            cases(3, 20) as u64,
+        );
         println!("class C, {km_h} km/h: {found}");
         assert!(found.pitch_ratio() <= pitch_bar, "{found}");
         assert!(found.peak_ratio() <= 0.8, "{found}");

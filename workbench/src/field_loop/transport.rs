@@ -10,13 +10,13 @@
 //!
 //! The implement's inertia is in that force, and not in the body; its own pitch inertia is left out.
 
+use crate::closed_loop::{ClosedLoop, OIL_TEMPERATURE_C, Sample};
 use hitch_field::body::{Body, BodyConstants, GRAVITY_M_S2, Ground, HitchLoad};
 use hitch_field::noise::Noise;
 use hitch_field::terrain::{RoughnessConstants, Terrain};
 use hitch_plant::Model;
 use hitch_quantities::units::{Count, MillimetrePerSecond};
 use hitch_quantities::{Calibration, Inputs, ValidCalibration};
-use hitch_workbench::closed_loop::{ClosedLoop, OIL_TEMPERATURE_C, Sample};
 use rayon::prelude::*;
 
 use super::rig::RAISED_DEG;
@@ -255,17 +255,27 @@ impl Ride {
 
     /// Drives the ride.
     #[must_use]
-    pub fn drive(&self, calibration: &ValidCalibration, seed: u64) -> RideFigures {
-        let model = hitch_model_file::dynamic();
+    pub fn drive(&self, model: &Model, calibration: &ValidCalibration, seed: u64) -> RideFigures {
+        RideFigures::of(&self.samples(model, calibration, seed))
+    }
+
+    /// Hitch and controller over the judged time.
+    #[must_use]
+    pub fn course(&self, model: &Model, calibration: &ValidCalibration, seed: u64) -> Vec<Sample> {
+        let samples = self.samples(model, calibration, seed);
+        samples.iter().map(|sample| sample.hitch).collect()
+    }
+
+    fn samples(&self, model: &Model, calibration: &ValidCalibration, seed: u64) -> Vec<RideSample> {
         let body = self.body.clone();
-        let mut rig = TransportRig::new(&model, calibration, body, &self.roughness, seed);
+        let mut rig = TransportRig::new(model, calibration, body, &self.roughness, seed);
         let mut stretch = |time_s: f64| -> Vec<RideSample> {
             (0..(time_s / STEP_S) as u64)
                 .map(|_| rig.step(RAISED_DEG, self.speed_m_s, |_| {}))
                 .collect()
         };
         stretch(Self::SETTLING_S);
-        RideFigures::of(&stretch(Self::JUDGED_S))
+        stretch(Self::JUDGED_S)
     }
 }
 
@@ -281,12 +291,12 @@ pub struct RideComparison {
 impl RideComparison {
     /// Drives all rides.
     #[must_use]
-    pub fn of(ride: &Ride, calibration: &ValidCalibration, seeds: u64) -> Self {
+    pub fn of(model: &Model, ride: &Ride, calibration: &ValidCalibration, seeds: u64) -> Self {
         let held = ValidCalibration::nominal();
         let [held, damped] = [&held, calibration].map(|calibration| {
             let figures: Vec<RideFigures> = (1..=seeds)
                 .into_par_iter()
-                .map(|seed| ride.drive(calibration, seed))
+                .map(|seed| ride.drive(model, calibration, seed))
                 .collect();
             RideFigures::mean(&figures)
         });
