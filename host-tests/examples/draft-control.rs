@@ -2,7 +2,7 @@
 //! and the lag's length of the draft loop: `cargo run -p host-tests --example draft-control -- 8 300 4500 1500`.
 
 use hitch_quantities::Function;
-use host_tests::field_rig::pass::{Comparison, fitted_with};
+use hitch_workbench::field_loop::pass::{Comparison, fitted_with};
 
 fn main() {
     let number = |index: usize| {
@@ -17,6 +17,9 @@ fn main() {
     });
     let seeds = u64::from(number(1).unwrap_or(4).unsigned_abs());
     for function in [Function::Draft, Function::Mix, Function::DepthLimit] {
-        println!("{}", Comparison::of(function, &calibration, seeds));
+        println!(
+            "{}",
+            Comparison::of(&hitch_model_file::dynamic(), function, &calibration, seeds)
+        );
     }
 }

@@ -6,7 +6,6 @@ pub mod drawn_hitches;
 pub mod ecu_day;
 pub mod ecu_tool;
 pub mod emulator;
-pub mod field_rig;
 pub mod frozen_angle;
 pub mod german_log;
 pub mod hidden_effects;

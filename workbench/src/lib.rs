@@ -13,6 +13,7 @@ pub mod ecu;
 pub mod effect_arg;
 pub mod error;
 pub mod explanation;
+pub mod field_loop;
 pub mod fmu_export;
 pub mod heat_table;
 pub mod import;

@@ -16,6 +16,7 @@
 //! * [`sensing`]: validation of the sensors,
 //! * [`operator`]: lever, button, dials and switches, the start-up lock, and the mode that follows from them,
 //! * [`reference`](mod@reference): draft, mix, depth limit and slip guard: the set point that they make of the lever,
+//! * [`ride`]: ride damping in transport: a piston speed from the pressure in the cylinder,
 //! * [`estimation`]: observers of motion, load and valve dynamics,
 //! * [`adaptation`]: adaptation of the valve model by the moves of this machine,
 //! * [`motion`]: position and rate law, from a set point or a button to a demanded speed,
@@ -53,6 +54,7 @@ pub mod estimation;
 pub mod motion;
 pub mod operator;
 pub mod reference;
+pub mod ride;
 pub mod sensing;
 pub mod sequencing;
 pub mod valve;

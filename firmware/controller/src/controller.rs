@@ -118,6 +118,9 @@ impl Controller {
         if request.healthy {
             self.envelope.reset();
         }
+        if request.rides {
+            self.envelope.claim_ride();
+        }
         self.command = Command {
             currents: request.currents,
             step: self.envelope.step(),
@@ -135,6 +138,7 @@ impl Controller {
             operator: &calibration.operator,
             rate: &calibration.rate,
             remote: &calibration.remote,
+            ride: &calibration.ride,
             damaged: self.memory.step(calibration),
             machine: MachineModel::of(calibration),
         };

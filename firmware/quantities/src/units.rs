@@ -184,6 +184,10 @@ quantity!(
     NewtonPerDegree, "n_per_deg", 1
 );
 quantity!(
+    /// A gain from pressure to piston speed, in micrometres a second for a bar.
+    MicrometrePerSecondPerBar, "mm_per_s_per_bar", 1000
+);
+quantity!(
     /// Frequency, in millihertz.
     MilliHertz, "hz", 1000
 );

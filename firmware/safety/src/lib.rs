@@ -24,7 +24,7 @@
 //!
 //! Its parts are watches, each for some rows of the table: `angle` (with `following` and `noise_detector`), `coils`,
 //! `supply`, `measuring`, `travel_limits`; `locks` for the operator's locks; `arming` for the operator's touch, with `button`; `consent` for remote
-//! control; and [`rows`], which counts how long each row has been holding.
+//! control; `ride` for ride damping; and [`rows`], which counts how long each row has been holding.
 //!
 //! ```
 //! use hitch_quantities::{CoilCurrents, Inputs, ValidCalibration};
@@ -38,6 +38,7 @@
 //!     operator: &calibration.operator,
 //!     rate: &calibration.rate,
 //!     remote: &calibration.remote,
+//!     ride: &calibration.ride,
 //!     damaged: false,
 //!     machine: MachineModel::of(&calibration),
 //! };
@@ -64,6 +65,7 @@ mod following;
 mod locks;
 mod measuring;
 mod noise_detector;
+mod ride;
 pub mod rows;
 mod samples;
 mod supply;
@@ -73,6 +75,7 @@ use hitch_quantities::calibration::design_parameters::{
     LockParameters, OperatorParameters, RateParameters, RemoteParameters, SafetyParameters,
     SensorParameters,
 };
+use hitch_quantities::calibration::field_parameters::RideParameters;
 use hitch_quantities::units::{Duty, MilliAmp, Millisecond};
 use hitch_quantities::{CoilCurrents, Duties, Inputs, Trip};
 
@@ -84,6 +87,7 @@ use consent::Consent;
 pub use following::MachineModel;
 use locks::{Lock, Locks};
 use measuring::MeasuringFaults;
+use ride::RideWatch;
 use rows::{Debounce, Rows};
 use supply::SupplyWatch;
 
@@ -105,6 +109,8 @@ pub struct Limits<'a> {
     pub rate: &'a RateParameters,
     /// How the operator consents to remote control.
     pub remote: &'a RemoteParameters,
+    /// What ride damping keeps to.
+    pub ride: &'a RideParameters,
     /// They, or others of their calibration, have changed in memory.
     pub damaged: bool,
     /// What currents do to the hitch.
@@ -117,6 +123,9 @@ pub struct Envelope {
     locks: Locks,
     arming: Arming,
     consent: Consent,
+    ride: RideWatch,
+    /// The next command is one of ride damping.
+    rides: bool,
     angle: AngleWatch,
     coils: CoilWatch,
     supply: SupplyWatch,
@@ -140,6 +149,11 @@ impl Envelope {
     #[must_use]
     pub const fn step(&self) -> Step {
         self.step.next()
+    }
+
+    /// The next command is one of ride damping: it has to keep to the row for that, besides all others.
+    pub fn claim_ride(&mut self) {
+        self.rides = true;
     }
 
     /// One step, whether or not there is a command of it. `inputs`: what the sensors say, unjudged. The currents that
@@ -284,6 +298,10 @@ impl Envelope {
         let beyond_limit = !slow_start && travel_limits::are_exceeded(inputs, self.passed, limits);
         let no_consent = self.consent.is_missing(inputs, lock, limits.remote)
             && self.passed != CoilCurrents::OFF;
+        let claims = core::mem::take(&mut self.rides);
+        let ride = self
+            .ride
+            .judge(inputs, self.passed, claims, lock, (limits.ride, safety));
         Rows::of([
             (Trip::Stale, command.is_none()),
             (Trip::BothCoils, both),
@@ -307,6 +325,7 @@ impl Envelope {
             (Trip::Memory, limits.damaged),
             (Trip::BeyondLimit, beyond_limit),
             (Trip::NoConsent, no_consent),
+            (Trip::Ride, ride),
         ])
     }
 

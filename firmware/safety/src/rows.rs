@@ -17,7 +17,7 @@ fn time(trip: Trip, parameters: &SafetyParameters) -> Millisecond {
         Trip::SensorSupply => parameters.sensor_supply_time,
         Trip::AngleTracks => parameters.track_time,
         Trip::Clock => parameters.clock_time,
-        Trip::BeyondLimit => parameters.limit_time,
+        Trip::BeyondLimit | Trip::Ride => parameters.limit_time,
         // Both coils are never right, and the watches of the others measure the time themselves.
         Trip::BothCoils
         | Trip::Supply

@@ -7,8 +7,10 @@ use hitch_field::strength::StrengthConstants;
 use hitch_quantities::calibration::field_parameters::DraftParameters;
 use hitch_quantities::units::{Count, MillimetrePerSecond, Newton, PerMille, SupplyShare};
 use hitch_quantities::{Calibration, Function, Inputs, Reason, Trouble, ValidCalibration};
-use host_tests::field_rig::pass::{Comparison, DRAFT_N, LINK_DEPTH_M, Pass, fitted, fitted_with};
-use host_tests::field_rig::rig::{FieldSample, Settings};
+use hitch_workbench::field_loop::pass::{
+    Comparison, DRAFT_N, LINK_DEPTH_M, Pass, fitted, fitted_with,
+};
+use hitch_workbench::field_loop::rig::{FieldSample, Settings};
 use host_tests::seeds::cases;
 use host_tests::trace;
 
@@ -108,7 +110,7 @@ fn smallest_ratio() -> f64 {
 fn draft_varies_less_and_the_mix_keeps_the_depth() {
     let seeds = cases(4, 24);
     let [draft, mix, limit] = [Function::Draft, Function::Mix, Function::DepthLimit]
-        .map(|function| Comparison::of(function, &fitted(), seeds));
+        .map(|function| Comparison::of(&hitch_model_file::dynamic(), function, &fitted(), seeds));
     println!(
         "{draft}\n{mix}\n{limit}\nwithout the long process: {:.3}",
         smallest_ratio()

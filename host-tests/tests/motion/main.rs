@@ -13,6 +13,7 @@ mod identified_dynamics;
 mod position;
 mod power_cut;
 mod rate;
+mod ride;
 mod sensor_lag;
 mod start_up;
 mod teach;

@@ -252,3 +252,28 @@ fn quick_lift_raises_and_returns_to_the_lever_without_overshoot() {
         }
     }
 }
+
+#[test]
+fn scenarios_of_the_field_say_what_is_required_and_take_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    let figures = |options: &str| {
+        let document = document(folder.path(), options);
+        let figures = document["field"].as_array().unwrap().clone();
+        assert!(document["moves"].as_array().unwrap().is_empty());
+        figures
+    };
+    let met = |figure: &Value| figure["value"].as_f64() <= figure["required"].as_f64();
+    let slip = figures("--scenario slip --report slip.html");
+    assert!(slip.iter().all(met), "{slip:?}");
+    let report = std::fs::read_to_string(folder.path().join("slip.html")).unwrap();
+    assert_self_contained(&report);
+    // A guard that may not raise the hitch lets it slip.
+    let weak = figures("--scenario slip --set slip.most_raise=0.5");
+    assert!(!met(&weak[0]), "{weak:?}");
+    let output = run(
+        folder.path(),
+        &["loop", "--scenario", "depth", "--load", "600"],
+    );
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("leave --load"));
+}

@@ -60,6 +60,7 @@ macro_rules! with_groups {
         $visit(&mut $calibration.bus $(, $argument)*)?;
         $visit(&mut $calibration.draft $(, $argument)*)?;
         $visit(&mut $calibration.slip $(, $argument)*)?;
+        $visit(&mut $calibration.ride $(, $argument)*)?;
         $visit(&mut $calibration.safety $(, $argument)*)?;
     };
 }

@@ -15,13 +15,14 @@ use crate::closed_loop::{
     LoopRun, MoveResult, OIL_TEMPERATURE_C, PressResult, PressRun, PressSummary, Summary, presses,
     run_presses, run_quick_lift,
 };
-use crate::commands::loop_scenario::LoopScenario;
+use crate::commands::loop_scenario::{self, LoopScenario};
 use crate::error::Error;
+use crate::field_loop::scenario::{self, FieldFigure, FieldRun, FieldScenario};
 use crate::output::JsonArg;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
-use crate::report::{loop_page, variants_page};
-use crate::{closed_loop, output};
+use crate::report::{field_page, loop_page, variants_page};
+use crate::{closed_loop, field_loop, output};
 
 /// Arguments of `hitch loop`.
 #[derive(Debug, clap::Args)]
@@ -92,6 +93,9 @@ struct Figures<'a> {
     /// Figures of all presses; absent for scenarios of moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     press_summary: Option<PressSummary>,
+    /// Figures of a function in the field; absent for other scenarios.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    field: Option<&'a [FieldFigure]>,
 }
 
 impl<'a> Figures<'a> {
@@ -101,6 +105,7 @@ impl<'a> Figures<'a> {
             summary: Some(run.summary),
             presses: None,
             press_summary: None,
+            field: None,
         }
     }
 
@@ -110,6 +115,17 @@ impl<'a> Figures<'a> {
             summary: None,
             presses: Some(&run.results),
             press_summary: Some(run.summary),
+            field: None,
+        }
+    }
+
+    fn of_field(run: &'a FieldRun) -> Self {
+        Self {
+            moves: &[],
+            summary: None,
+            presses: None,
+            press_summary: None,
+            field: Some(&run.figures),
         }
     }
 }
@@ -144,6 +160,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     };
     match args.scenario {
         LoopScenario::Rate => job.run_rate(),
+        LoopScenario::Field(scenario) => job.run_field(scenario),
         _ => job.run_moves(),
     }
 }
@@ -270,6 +287,39 @@ impl Job<'_> {
         stuck.next().map_or(Ok(()), |what| Err(Error::Usage(what)))
     }
 
+    /// Drives a function in the field.
+    fn run_field(&self, scenario: FieldScenario) -> Result<(), Error> {
+        let has_others = !self.args.variants.is_empty()
+            || self.loads_kg.is_some()
+            || self.args.oil_temperatures.is_some();
+        if has_others {
+            return Err(Error::Usage(
+                "scenarios of the field have their own loads and oil temperature, and no variants: leave --load, \
+                 --loads, --oil-temperatures and --variant out, and change the calibration by --set"
+                    .to_owned(),
+            ));
+        }
+        let model = closed_loop::with_dynamics(self.model)?;
+        let Some(base) = self.calibrations.first() else {
+            return Ok(());
+        };
+        let progress = Progress::start("driving in the field");
+        let run = scenario::drive(scenario, &model, base).map_err(Error::Usage)?;
+        drop(progress);
+        if let Some(path) = &self.args.report {
+            let name = loop_scenario::typed(&scenario);
+            let page = field_page::page(&name, &model, &self.source(), &run);
+            output::write_file(path, page.as_bytes())?;
+        }
+        let document = Driven {
+            figures: Figures::of_field(&run),
+            variants: Vec::new(),
+        };
+        self.outputs.tell(&self.args.json, &document, || {
+            field_loop::show::text(&run.figures)
+        })
+    }
+
     /// A fault of a run; with variants, after the name of its calibration.
     fn of_variant(&self, name: &str, what: String) -> String {
         match self.args.variants.is_empty() {
@@ -341,7 +391,7 @@ fn drive(
             let moves = scenario.moves_with_oil(model, loads_kg, oil_c);
             closed_loop::run(model, calibration, &moves)
         }
-        LoopScenario::QuickLift | LoopScenario::Rate => run_quick_lift(
+        LoopScenario::QuickLift | LoopScenario::Rate | LoopScenario::Field(_) => run_quick_lift(
             model,
             calibration,
             loads_kg.unwrap_or(&model.usual_loads_kg()),

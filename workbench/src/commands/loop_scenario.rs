@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
 use crate::closed_loop::Scenario;
+use crate::field_loop::scenario::FieldScenario;
 
 /// What is driven.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +17,8 @@ pub enum LoopScenario {
     Rate,
     /// The button of quick lift.
     QuickLift,
+    /// A function in the field.
+    Field(FieldScenario),
 }
 
 impl Default for LoopScenario {
@@ -35,11 +38,18 @@ impl ValueEnum for LoopScenario {
             Self::Moves(Scenario::Limits),
             Self::Rate,
             Self::QuickLift,
+            Self::Field(FieldScenario::Draft),
+            Self::Field(FieldScenario::Mix),
+            Self::Field(FieldScenario::Slip),
+            Self::Field(FieldScenario::Depth),
+            Self::Field(FieldScenario::Transport),
+            Self::Field(FieldScenario::Headland),
         ]
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(match self {
+            Self::Field(scenario) => return scenario.to_possible_value(),
             Self::Moves(scenario) => return scenario.to_possible_value(),
             Self::Rate => PossibleValue::new("rate").help(
                 "The external button at 20, 50 and 100 % of its fastest speed: steady speed, delays, overshoot",

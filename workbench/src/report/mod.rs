@@ -7,6 +7,7 @@ pub mod diagnosis_page;
 mod drawn;
 mod error_map;
 pub mod explanation_page;
+pub mod field_page;
 pub mod fit_page;
 pub mod loop_page;
 pub mod main_page;

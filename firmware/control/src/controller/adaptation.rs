@@ -44,7 +44,9 @@ impl Control {
             &calibration.hydraulics,
         );
         self.scale = self.curves.scale(self.load.drop());
-        let rests = matches!(self.phase, Phase::Holding) && self.angle_has_settled();
+        let rests = matches!(self.phase, Phase::Holding)
+            && self.ride.demand().is_none()
+            && self.angle_has_settled();
         self.rest
             .update(self.motion.position(), rests, &calibration.hold);
         self.drift.tick(&calibration.hold);

@@ -38,6 +38,9 @@ impl Control {
         held_back: bool,
     ) -> Result<CoilCurrents, Fault> {
         let reference = self.reference(sensed, inputs, jog);
+        if let Some(speed) = self.ride.demand() {
+            return Ok(self.ride_currents(speed));
+        }
         let demand = reference.map(|reference| match reference {
             Reference::Position(target) => self.position_law(target, inputs),
             Reference::Rate(rate) => self.rate_law(rate, sensed, inputs),
@@ -97,6 +100,9 @@ impl Control {
             self.target = (set_point, calibration.linkage.travel(set_point));
         }
         let target = self.target.1;
+        if self.rides(sensed, inputs, highest, changed) {
+            return None;
+        }
         let resting = matches!(self.phase, Phase::Holding) && self.stays(target);
         let calibration = &self.calibration;
         let floats = self
@@ -270,7 +276,7 @@ impl Control {
     }
 
     /// Inverse valve map: the valve of the flow's direction and its current. `None` without flow.
-    fn valve_map(&self, flow: MicroLitrePerSecond) -> Option<(Direction, MilliAmp)> {
+    pub(super) fn valve_map(&self, flow: MicroLitrePerSecond) -> Option<(Direction, MilliAmp)> {
         let map = self.curves.at(self.scale);
         match flow.0 {
             0 => None,
@@ -280,7 +286,7 @@ impl Control {
     }
 
     /// Coil currents: the mapped current with hysteresis compensation and threshold offset.
-    fn coil_currents(&mut self, mapped: Option<(Direction, MilliAmp)>) -> CoilCurrents {
+    pub(super) fn coil_currents(&mut self, mapped: Option<(Direction, MilliAmp)>) -> CoilCurrents {
         let compensation = self.hysteresis.step(
             self.phase.speed().magnitude(),
             self.calibration.hydraulics.hysteresis,

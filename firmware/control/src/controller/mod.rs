@@ -26,6 +26,7 @@ use crate::operator::lever::SteadyLever;
 use crate::operator::mode::Mode;
 use crate::operator::{EngineWatch, Float, QuickLift};
 use crate::reference::ReferenceControl;
+use crate::ride::RideDamping;
 use crate::sensing::sensors::{Sensed, Sensors};
 use crate::sequencing::drift_monitor::DriftMonitor;
 use crate::sequencing::stall_detector::StallDetector;
@@ -39,6 +40,7 @@ mod law;
 mod modes;
 mod monitoring;
 mod report;
+mod ride;
 
 /// Output of a control step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +51,8 @@ pub struct ControlRequest {
     pub recovered: bool,
     /// There is no fault: control asks for the end of a trip of the envelope.
     pub healthy: bool,
+    /// The currents are those of ride damping.
+    pub rides: bool,
 }
 
 /// The control part of the controller: a calibration and a state.
@@ -63,6 +67,7 @@ pub struct Control {
     float: Float,
     lever: SteadyLever,
     reference: ReferenceControl,
+    ride: RideDamping,
     position: PositionControl,
     rate: RateControl,
     motion: MotionObserver,
@@ -112,6 +117,7 @@ impl Control {
             float: Float::default(),
             lever: SteadyLever::default(),
             reference: ReferenceControl::default(),
+            ride: RideDamping::default(),
             position: PositionControl::default(),
             rate: RateControl::default(),
             motion: MotionObserver::default(),
@@ -176,6 +182,10 @@ impl Control {
             self.reference.sense(inputs, moves, &self.calibration);
         }
         let sensed = self.sensors.judge(inputs, &self.calibration.sensors);
+        if RideDamping::is_fitted(&self.calibration) {
+            let pressure = sensed.ok().and_then(|sensed| sensed.cylinder_pressure);
+            self.ride.sense(inputs, pressure, &self.calibration.ride);
+        }
         let currents = match sensed.and_then(|sensed| self.run(&sensed, inputs, held_back)) {
             Ok(currents) => currents,
             Err(fault) => self.fail(fault),
@@ -185,6 +195,7 @@ impl Control {
             currents,
             recovered: self.recovered,
             healthy: self.mode.fault().is_none(),
+            rides: self.ride.demand().is_some(),
         }
     }
 

@@ -16,6 +16,7 @@ impl Control {
             self.teach.abort();
         }
         self.mode = Mode::failed(fault);
+        self.ride.end();
         self.button.distrust();
         self.demanded_flow = MicroLitrePerSecond::ZERO;
         self.phase = self.phase.cut();
@@ -61,6 +62,7 @@ impl Control {
         if !follows_lever {
             self.float.end();
             self.reference.end();
+            self.ride.end();
         }
     }
 }

@@ -359,6 +359,12 @@ impl MotionObserver {
         self.bias = MicrometrePerSecond::ZERO;
     }
 
+    /// Positions of lift and lowering spool, as currents.
+    #[must_use]
+    pub const fn spools(&self) -> [MilliAmp; 2] {
+        self.spools
+    }
+
     /// Piston travel.
     #[must_use]
     pub fn position(&self) -> Micrometre {

@@ -117,6 +117,11 @@ impl PositionControl {
         self.set_point.unwrap_or(otherwise)
     }
 
+    /// Another law has moved the hitch about its set point: the next move is one to the set point.
+    pub fn begin_anew(&mut self) {
+        (self.arrived, self.started, self.accepted) = (false, false, false);
+    }
+
     /// Accepts the present position as the set point until the lever moves.
     pub fn accept(&mut self) {
         self.accepted = true;

@@ -17,6 +17,7 @@ pub mod draft_signal;
 pub mod hold;
 pub mod lag_loop;
 pub mod low_pass;
+pub mod received;
 pub mod selector;
 pub mod slip_guard;
 pub mod slip_signal;

@@ -5,10 +5,11 @@
 
 use hitch_quantities::calibration::field_parameters::SlipParameters;
 use hitch_quantities::fixed::{Divisor, mul_div, mul_shift_16};
-use hitch_quantities::units::{MillimetrePerSecond, Millisecond, PerMille};
+use hitch_quantities::units::{MillimetrePerSecond, PerMille};
 use hitch_quantities::{Inputs, Trouble};
 
 use super::low_pass::LowPass;
+use super::received::Received;
 
 /// One, of 2^-16.
 const ONE: i32 = 1 << 16;
@@ -17,32 +18,6 @@ const BITS: u32 = 10;
 
 /// Fraction bits of the slip in its filter.
 const FILTER_BITS: u32 = 8;
-
-/// A speed that is received now and then.
-#[derive(Clone, Copy, Debug, Default)]
-struct Received {
-    last: Option<MillimetrePerSecond>,
-    age: Millisecond,
-    /// For how long it has been the same.
-    still: Millisecond,
-}
-
-impl Received {
-    fn step(&mut self, sample: Option<MillimetrePerSecond>, time_out: Millisecond) {
-        self.age = self.age.next();
-        self.still = self.still.next();
-        if sample.is_some() {
-            if sample != self.last {
-                self.still = Millisecond::ZERO;
-            }
-            self.last = sample;
-            self.age = Millisecond::ZERO;
-        }
-        if self.age > time_out {
-            self.last = None;
-        }
-    }
-}
 
 /// Speeds, rolling radius and slip from step to step.
 #[derive(Clone, Copy, Debug)]

@@ -58,6 +58,8 @@ const CRYSTAL: u32 = OWN + 18;
 const IMAGE: u32 = OWN + 19;
 /// Both speeds of slip control.
 const SPEEDS: u32 = OWN + 20;
+/// Ride damping.
+const RIDE: u32 = OWN + 21;
 /// J1939 network 1, the primary vehicle network.
 const NETWORK: u32 = 639;
 /// Sensor supply voltage 1.
@@ -182,12 +184,14 @@ troubles! {
     DraftPins = DRAFT / 2,
     /// A draft pin stands still while the implement works.
     DraftPinFrozen = DRAFT / 9,
-    /// The ground speed that the slip guard needs is not received.
+    /// The ground speed that slip guard or ride damping needs is not received.
     GroundSpeedLost = GROUND_SPEED / 9,
     /// The wheel speed that the slip guard needs is not received.
     WheelSpeedLost = WHEEL_SPEED / 9,
     /// One of the speeds of the slip guard stands still while the other one changes.
     SpeedFrozen = SPEEDS / 2,
+    /// A current of ride damping beyond its travel band, without its ground speed, or with the operator at the controls.
+    Ride = RIDE / 31,
 }
 
 /// A set of troubles.
@@ -346,6 +350,7 @@ impl TroubleFinder {
             Trip::Memory => Trouble::Memory,
             Trip::BeyondLimit => Trouble::BeyondLimit,
             Trip::NoConsent => Trouble::NoConsent,
+            Trip::Ride => Trouble::Ride,
         }
     }
 }

@@ -39,7 +39,9 @@ fn reassembled(sent: &[Sent], group: Pgn) -> Vec<u8> {
 fn several_codes_go_as_a_broadcast() {
     let mut bus = Bus::claimed(Variant::Iso11783);
     bus.status.troubles = troubles(Trouble::ALL);
-    bus.run(1_500);
+    // Packets of seven bytes, one each 50 ms.
+    let packets = (2 + 4 * Trouble::ALL.len()).div_ceil(7);
+    bus.run(100 + 50 * u32::try_from(packets).unwrap());
     let bytes = reassembled(&bus.sent, Pgn::DM1);
     assert_eq!(bytes.len(), 2 + 4 * Trouble::ALL.len());
     for (trouble, code) in Trouble::ALL.iter().zip(bytes[2..].chunks(4)) {

@@ -182,6 +182,15 @@ pub const CLASSES: &[Classified] = &[
         "highest_limit", "lowest_speed", "time_out", "frozen_time", "filter", "slip_per_degree", "crossover",
         "most_raise", "radius_time", "radius_range",
     ]),
+    row("ride", Class::Machine, &[
+        "gain", "low_corner", "high_corner", "lead", "forcing", "dead_band", "centring_time",
+    ]),
+    row("ride", UP, &[
+        "begin_speed", "end_speed", "height",
+    ]),
+    row("ride", DOWN, &[
+        "fitted", "speed", "band", "time_out",
+    ]),
     row("safety", UP, &[
         "arming_movement", "shortest_step", "supply_min", "following_share", "following_speed",
         "sensor_supply_min",

@@ -1,11 +1,11 @@
-//! Calibration of draft, mix, depth limit and slip guard.
+//! Calibration of draft, mix, depth limit, slip guard and ride damping.
 //!
 //! The reasons refer to a three-furrow plough of 1.2 m at 25 cm and 1.8 m/s in loam, about 18 kN, on two pins of 40 kN.
 
 use super::parameter::parameter_group;
 use crate::units::{
-    Count, MilliDegree, MilliHertz, Millimetre, MillimetrePerSecond, Millisecond, Newton,
-    NewtonPerDegree, PerMille, SupplyShare,
+    Count, MicrometrePerSecond, MicrometrePerSecondPerBar, MilliDegree, MilliHertz, Millimetre,
+    MillimetrePerSecond, Millisecond, Newton, NewtonPerDegree, PerMille, SupplyShare,
 };
 
 parameter_group! {
@@ -83,5 +83,39 @@ parameter_group! {
         radius_time: Millisecond = 4_000, 500..=60_000;
         /// How far the rolling radius may differ from its nominal value.
         radius_range: PerMille = 150, 0..=300;
+    }
+}
+
+parameter_group! {
+    /// Ride damping in transport.
+    RideParameters, "ride" {
+        /// Whether the hitch damps the ride: 0 no; 1 yes, which needs a sensor of the cylinder's pressure and a ground speed.
+        fitted: Count = 0, 0..=1;
+        /// Piston speed for a bar of the band-passed pressure, against it: with 600 kg and a tractor of 4.5 t half of it leaves 3 % more of the pitch.
+        gain: MicrometrePerSecondPerBar = 3_000, 0..=20_000;
+        /// Lower corner of the band-pass: below heave and pitch of a tractor, 1 to 2.5 Hz.
+        low_corner: MilliHertz = 500, 100..=2_000;
+        /// Upper corner of the band-pass: above them.
+        high_corner: MilliHertz = 4_000, 1_000..=20_000;
+        /// Lead on the band-passed pressure, against the lag of the spools of 30 to 55 ms.
+        lead: Millisecond = 40, 0..=200;
+        /// Current above that of the wanted flow, as a multiple of what the spool lacks: five times the pace of the spool.
+        forcing: PerMille = 4_000, 0..=5_000;
+        /// Largest piston speed: 1.1 degree at 1.5 Hz.
+        speed: MicrometrePerSecond = 20_000, 1_000..=20_000;
+        /// Piston speed from which a valve opens: noise of the pressure sensor, 0.3 mm/s, does not switch a coil. It closes when the speed changes its sign.
+        dead_band: MicrometrePerSecond = 2_000, 0..=20_000;
+        /// Largest angle from the set point. At most 3 degrees, which are the extra travel.
+        band: MilliDegree = 3_000, 500..=3_000;
+        /// Time constant of the return to the set point: far below the band-pass.
+        centring_time: Millisecond = 7_000, 1_000..=30_000;
+        /// Ground speed above which damping begins: 8 km/h.
+        begin_speed: MillimetrePerSecond = 2_222, 1_500..=10_000;
+        /// Ground speed below which it ends, and the envelope permits no current of it: 5 km/h. At least the default: a person walks beside the machine below it.
+        end_speed: MillimetrePerSecond = 1_389, 1_389..=10_000;
+        /// Share of the travel between the limits above which the implement is carried.
+        height: PerMille = 600, 200..=950;
+        /// Time after which a ground speed that was not received is lost: five periods of 100 ms. At most a second, in which a tractor that brakes stands.
+        time_out: Millisecond = 500, 100..=1_000;
     }
 }

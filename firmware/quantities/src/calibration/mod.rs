@@ -21,13 +21,13 @@ use design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
-use field_parameters::{DraftParameters, SlipParameters};
+use field_parameters::{DraftParameters, RideParameters, SlipParameters};
 use linkage::{LINKAGE_POINTS, LinkageTable};
 use parameter::{OutOfRange, ParameterGroup};
 use valve_table::{VALVE_POINTS, ValveTable};
 
 /// Layout of the block that this firmware reads.
-pub const CALIBRATION_VERSION: u32 = 6;
+pub const CALIBRATION_VERSION: u32 = 7;
 
 /// Largest flow in a table: ten times the pump's, and far from where products saturate.
 const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
@@ -75,6 +75,8 @@ pub struct Calibration {
     pub draft: DraftParameters,
     /// Slip guard.
     pub slip: SlipParameters,
+    /// Ride damping.
+    pub ride: RideParameters,
     /// Safety envelope.
     pub safety: SafetyParameters,
     /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
@@ -213,6 +215,7 @@ impl Calibration {
             remote: RemoteParameters::NOMINAL,
             draft: DraftParameters::NOMINAL,
             slip: SlipParameters::NOMINAL,
+            ride: RideParameters::NOMINAL,
             safety: SafetyParameters::NOMINAL,
             checksum: 0,
         }
@@ -361,6 +364,13 @@ impl Calibration {
                 self.remote.highest.0,
             ),
             (
+                "ride",
+                "end_speed",
+                self.ride.end_speed.0,
+                "begin_speed",
+                self.ride.begin_speed.0,
+            ),
+            (
                 "hydraulics",
                 "smallest_drop",
                 hydraulics.smallest_drop.0,
@@ -458,6 +468,7 @@ impl Calibration {
         self.remote.visit(visit);
         self.draft.visit(visit);
         self.slip.visit(visit);
+        self.ride.visit(visit);
         self.safety.visit(visit);
         visit_unsigned(&mut self.checksum, visit);
     }

@@ -50,11 +50,13 @@ pub enum Reason {
     AboveGround = 7,
     /// A function has ended or lost its sensor: the present depth is held until the lever takes over.
     Holds = 8,
+    /// Ride damping moves the hitch about the lever's set point.
+    Ride = 9,
 }
 
 impl Reason {
     /// All of them, in the order of their codes, which begin at 1.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Draft,
         Self::Mix,
         Self::DepthLimit,
@@ -63,6 +65,7 @@ impl Reason {
         Self::Slip,
         Self::AboveGround,
         Self::Holds,
+        Self::Ride,
     ];
 
     /// Name as it appears in text outputs.
@@ -77,6 +80,7 @@ impl Reason {
             Self::Slip => "slip",
             Self::AboveGround => "above-ground",
             Self::Holds => "holds",
+            Self::Ride => "ride",
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::fault::Fault;
 
 /// Number of rows.
-pub const ROWS: usize = 22;
+pub const ROWS: usize = 23;
 
 /// What tripped the envelope, with the code it has on links and in traces; the order of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +53,8 @@ pub enum Trip {
     BeyondLimit = 21,
     /// A current on the set point of an implement to which the operator has not consented.
     NoConsent = 22,
+    /// A current of ride damping beyond its travel band, without its ground speed, or with the operator at the controls.
+    Ride = 23,
 }
 
 impl Trip {
@@ -80,6 +82,7 @@ impl Trip {
         Self::Memory,
         Self::BeyondLimit,
         Self::NoConsent,
+        Self::Ride,
     ];
 
     /// True if only a restart clears it: the driver has to be tested, or the calibration read from flash, before it is
@@ -103,9 +106,12 @@ impl Trip {
             | Self::AngleNoisy
             | Self::AngleTracks => Fault::Angle,
             Self::NotFollowing => Fault::NotFollowing,
-            Self::Stale | Self::BothCoils | Self::Against | Self::BeyondLimit | Self::NoConsent => {
-                Fault::Envelope
-            }
+            Self::Stale
+            | Self::BothCoils
+            | Self::Against
+            | Self::BeyondLimit
+            | Self::NoConsent
+            | Self::Ride => Fault::Envelope,
             Self::Overrun | Self::Clock => Fault::Overrun,
             Self::Reference => Fault::Reference,
             Self::SensorSupply => Fault::SensorSupply,

@@ -61,12 +61,13 @@ fn every_trip_is_reported_as_a_fault_of_its_kind() {
             Fault::Memory,
             Fault::Envelope,
             Fault::Envelope,
+            Fault::Envelope,
         ]
     );
     assert_eq!(
         Trip::ALL.map(|trip| trip as usize),
         [
-            1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22
+            1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23
         ]
     );
 }

@@ -14,6 +14,7 @@ mod noise_detector;
 mod onset;
 mod recovery;
 mod release;
+mod ride;
 mod rows;
 mod sensor_lag;
 mod signals;
@@ -27,6 +28,7 @@ use hitch_quantities::calibration::design_parameters::{
     LockParameters, OperatorParameters, RateParameters, RemoteParameters, SafetyParameters,
     SensorParameters,
 };
+use hitch_quantities::calibration::field_parameters::RideParameters;
 use hitch_quantities::units::{
     Microsecond, MilliAmp, MilliDegree, MilliDegreePerSecond, MilliVolt,
 };
@@ -43,6 +45,7 @@ fn limits() -> Limits<'static> {
         sensors: &SENSORS,
         lock: &LockParameters::NOMINAL,
         remote: &RemoteParameters::NOMINAL,
+        ride: &RideParameters::NOMINAL,
         operator: &OperatorParameters::NOMINAL,
         rate: &RateParameters::NOMINAL,
         damaged: false,

@@ -37,7 +37,7 @@ fn shift(inputs: &mut Inputs, by: MilliDegree) {
 }
 
 /// Causes with a row that they trip, at one of the orders and times at least.
-const CAUSES: [(&str, Trip, Wrong); 21] = [
+const CAUSES: [(&str, Trip, Wrong); 22] = [
     ("no command", Trip::Stale, |_, _| {}),
     ("both coils", Trip::BothCoils, |_, _| {}),
     ("late", Trip::Overrun, |inputs, _| {
@@ -92,6 +92,7 @@ const CAUSES: [(&str, Trip, Wrong); 21] = [
     ("dial shut", Trip::BeyondLimit, |inputs, _| {
         inputs.lowering_dial = Some(PerMille(0));
     }),
+    ("ride without a speed", Trip::Ride, |_, _| {}),
     ("no consent", Trip::NoConsent, |inputs, _| {
         inputs.set_point = Some(MilliDegree(PLACE));
     }),
@@ -148,6 +149,9 @@ impl Bench {
                 }),
                 _ => Some(order.currents()),
             };
+            if trip == Trip::Ride {
+                self.rig.envelope.claim_ride();
+            }
             self.step(currents, &inputs);
         }
     }

@@ -62,5 +62,6 @@ pub const fn trip(trip: Trip) -> &'static str {
         Trip::Memory => "calibration memory damaged",
         Trip::BeyondLimit => "current beyond a limit of the travel",
         Trip::NoConsent => "current on a set point without consent",
+        Trip::Ride => "current of ride damping that must not be",
     }
 }

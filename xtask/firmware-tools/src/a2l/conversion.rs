@@ -107,6 +107,7 @@ fn unit(suffix: &str) -> &'static str {
         "m_per_s" => "m/s",
         "n" => "N",
         "n_per_deg" => "N/deg",
+        "mm_per_s_per_bar" => "mm/(s bar)",
         "hz" => "Hz",
         "ul_per_s" => "ul/s",
         "a" => "A",

@@ -96,5 +96,6 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::GroundSpeedLost => "ground speed not received",
         Trouble::WheelSpeedLost => "wheel speed not received",
         Trouble::SpeedFrozen => "ground speed or wheel speed frozen",
+        Trouble::Ride => "current of ride damping that must not be",
     }
 }

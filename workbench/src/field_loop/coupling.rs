@@ -11,6 +11,9 @@
 use hitch_field::body::GRAVITY_M_S2;
 use hitch_plant::Model;
 
+/// Rocker angles just inside the ends of the travel, degree.
+const ENDS_DEG: [f64; 2] = [44.1, 135.9];
+
 /// Geometry of the coupling.
 #[derive(Debug, Clone, Copy)]
 pub struct Coupling<'m> {
@@ -45,15 +48,22 @@ impl<'m> Coupling<'m> {
         self.touch_m - self.height_m(angle_deg)
     }
 
+    /// Whether the linkage lowers the links to a depth, m.
+    #[must_use]
+    pub fn reaches(&self, depth_m: f64) -> bool {
+        let [lowest_deg, highest_deg] = ENDS_DEG;
+        (self.depth_m(highest_deg)..=self.depth_m(lowest_deg)).contains(&depth_m)
+    }
+
     /// Rocker angle at a depth of the links, m, degree.
     ///
     /// # Panics
     /// If the linkage does not reach it.
     #[must_use]
     pub fn angle_deg(&self, depth_m: f64) -> f64 {
-        let (mut low, mut high) = (44.1, 135.9);
+        let [mut low, mut high] = ENDS_DEG;
         assert!(
-            (self.depth_m(high)..=self.depth_m(low)).contains(&depth_m),
+            self.reaches(depth_m),
             "{depth_m} m are out of the linkage's reach"
         );
         for _ in 0..60 {
@@ -67,17 +77,16 @@ impl<'m> Coupling<'m> {
     }
 
     /// Load of the hitch, kg, with forces of the soil: draft, and upwards, N.
-    ///
-    /// # Panics
-    /// If the linkage has no posture at this angle.
     #[must_use]
     pub fn load_kg(&self, angle_deg: f64, draft_n: f64, vertical_n: f64) -> f64 {
-        let joints = self
-            .model
-            .joints(angle_deg.to_radians())
-            .expect("an angle of the plant");
-        let link = joints.hitch_point - joints.pivot;
-        let rearwards_per_rise = -link.y / link.x.abs();
+        let rearwards_per_rise = match self.model.joints(angle_deg.to_radians()) {
+            Ok(joints) => {
+                let link = joints.hitch_point - joints.pivot;
+                -link.y / link.x.abs()
+            }
+            // Beyond its ends the linkage has no posture; the plant does not go there.
+            Err(_) => 0.0,
+        };
         let carried_n = vertical_n + draft_n * rearwards_per_rise;
         (self.implement_kg - carried_n / GRAVITY_M_S2).max(0.0)
     }

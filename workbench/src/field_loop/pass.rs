@@ -110,8 +110,12 @@ pub struct Comparison {
 impl Comparison {
     /// Drives all passes.
     #[must_use]
-    pub fn of(function: Function, calibration: &ValidCalibration, seeds: u64) -> Self {
-        let model = hitch_model_file::dynamic();
+    pub fn of(
+        model: &Model,
+        function: Function,
+        calibration: &ValidCalibration,
+        seeds: u64,
+    ) -> Self {
         let figures = |function, seed| {
             let pass = Pass {
                 soil: SoilPlan::varying(Texture::Medium),
@@ -125,7 +129,7 @@ impl Comparison {
                 work_s: 60.0,
                 seed,
             };
-            Figures::of(&pass.drive(&model, calibration, |_, _| {}))
+            Figures::of(&pass.drive(model, calibration, |_, _| {}))
         };
         let pairs: Vec<[Figures; 2]> = (1..=seeds)
             .into_par_iter()

@@ -11,3 +11,6 @@ pub mod coupling;
 pub mod figures;
 pub mod pass;
 pub mod rig;
+pub mod scenario;
+pub mod show;
+pub mod transport;

@@ -1,12 +1,12 @@
 //! The loop, in steps of a millisecond.
 
+use crate::closed_loop::{ClosedLoop, OIL_TEMPERATURE_C, Sample};
 use hitch_field::soil::SoilPlan;
 use hitch_field::terrain::Terrain;
 use hitch_field::tractor::{Demand, Outputs as Field, Readings, Tractor, TractorConstants};
 use hitch_plant::Model;
 use hitch_quantities::units::{Count, MillimetrePerSecond, Newton, PerMille, SupplyShare};
 use hitch_quantities::{Function, Inputs, ValidCalibration};
-use hitch_workbench::closed_loop::{ClosedLoop, OIL_TEMPERATURE_C, Sample};
 
 use super::coupling::Coupling;
 

@@ -1,0 +1,458 @@
+//! Scenarios of the field: what each function does on the soil, the road or the headland that it is meant for.
+
+use clap::ValueEnum;
+use hitch_field::body::BodyConstants;
+use hitch_field::draft::Texture;
+use hitch_field::soil::{SoilPlan, Stretch};
+use hitch_field::terrain::{Terrain, Undulation};
+use hitch_field::tractor::{Outputs as Field, TractorConstants};
+use hitch_plant::Model;
+use hitch_quantities::units::{Count, PerMille};
+use hitch_quantities::{Function, ValidCalibration};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::coupling::Coupling;
+use super::figures::{Spread, activations};
+use super::pass::{Comparison, DRAFT_N, LINK_DEPTH_M, Pass, SPEED_M_S};
+use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings, TOUCH_DEG};
+use super::transport::{Ride, RideComparison, class_c};
+use crate::closed_loop::Sample;
+
+/// Seeds of soil and noise over which figures are means.
+const SEEDS: u64 = 4;
+/// Deepest links that a scenario asks for, m.
+const DEEPEST_M: f64 = 0.30;
+
+/// A scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum FieldScenario {
+    /// Draft control in varying loam, and from coarse to fine soil
+    Draft,
+    /// Mix at 0.5 in varying loam
+    Mix,
+    /// Slip guard on a soft patch of 20 m
+    Slip,
+    /// Depth limit over an undulation of 10 m and 100 mm
+    Depth,
+    /// Ride damping with 600 kg on rough roads
+    Transport,
+    /// Draft control that is raised on a headland and lowered again
+    Headland,
+}
+
+/// A figure of a scenario.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct FieldFigure {
+    /// What it is.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its unit; empty for a ratio.
+    pub unit: &'static str,
+    /// The largest value that meets the requirement, if there is one.
+    pub required: Option<f64>,
+}
+
+impl FieldFigure {
+    fn new(name: &str, value: f64, unit: &'static str, required: Option<f64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            value,
+            unit,
+            required,
+        }
+    }
+
+    /// Whether it meets its requirement.
+    #[must_use]
+    pub fn is_met(&self) -> bool {
+        self.required.is_none_or(|required| self.value <= required)
+    }
+}
+
+/// A driven scenario.
+#[derive(Debug, Clone)]
+pub struct FieldRun {
+    /// Its figures.
+    pub figures: Vec<FieldFigure>,
+    /// Hitch and controller over one course of it, in steps of a millisecond.
+    pub hitch: Vec<Sample>,
+    /// Tractor and field of the same steps; empty on a road.
+    pub field: Vec<Field>,
+}
+
+impl FieldRun {
+    fn of(figures: Vec<FieldFigure>, course: &[FieldSample]) -> Self {
+        Self {
+            figures,
+            hitch: course.iter().map(|sample| sample.hitch).collect(),
+            field: course.iter().map(|sample| sample.field).collect(),
+        }
+    }
+}
+
+/// Drives a scenario. What the calibration leaves off is switched on with its other values.
+///
+/// # Errors
+/// If the model cannot lower its links to the depths of the scenarios.
+pub fn drive(
+    scenario: FieldScenario,
+    model: &Model,
+    calibration: &ValidCalibration,
+) -> Result<FieldRun, String> {
+    let coupling = Coupling::new(model, TOUCH_DEG, 0.0);
+    if !coupling.reaches(DEEPEST_M) || !coupling.reaches(coupling.depth_m(RAISED_DEG)) {
+        return Err(format!(
+            "scenarios of the field need links that reach from {RAISED_DEG} degrees to {:.0} cm below the height at \
+             {TOUCH_DEG} degrees; this model's do not",
+            DEEPEST_M * 100.0
+        ));
+    }
+    let calibration = &fitted(calibration)?;
+    Ok(match scenario {
+        FieldScenario::Draft => draft(model, calibration),
+        FieldScenario::Mix => mix(model, calibration),
+        FieldScenario::Slip => slip(model, calibration),
+        FieldScenario::Depth => depth(model, calibration),
+        FieldScenario::Transport => transport(model, calibration),
+        FieldScenario::Headland => headland(model, calibration),
+    })
+}
+
+/// The calibration with pins, slip guard and ride damping.
+fn fitted(calibration: &ValidCalibration) -> Result<ValidCalibration, String> {
+    let mut fitted = (**calibration).clone();
+    fitted.draft.fitted = Count(1);
+    fitted.ride.fitted = Count(1);
+    if fitted.slip.highest_limit == PerMille(0) {
+        fitted.slip.highest_limit = PerMille(300);
+    }
+    let sealed = fitted.seal();
+    sealed.map_err(|error| format!("the calibration is invalid with all functions on: {error:?}"))
+}
+
+fn settings(function: Function) -> Settings {
+    Settings {
+        function,
+        draft_n: Some(DRAFT_N),
+        mix: Some(0.5),
+        slip_limit: None,
+    }
+}
+
+fn pass(soil: SoilPlan, settings: Settings, work_s: f64) -> Pass {
+    Pass {
+        soil,
+        settings,
+        link_depth_m: LINK_DEPTH_M,
+        work_s,
+        seed: 1,
+    }
+}
+
+/// Figures of a function in varying loam, and a course of it.
+fn compared(
+    model: &Model,
+    calibration: &ValidCalibration,
+    function: Function,
+    [most_draft, most_depth]: [Option<f64>; 2],
+) -> FieldRun {
+    let found = Comparison::of(model, function, calibration, SEEDS);
+    let figures = vec![
+        FieldFigure::new(
+            "deviation of the draft over that of position control",
+            found.draft_ratio,
+            "",
+            most_draft,
+        ),
+        FieldFigure::new(
+            "the same through a low-pass of 3.2 Hz",
+            found.filtered_ratio,
+            "",
+            None,
+        ),
+        FieldFigure::new(
+            "deviation of the depth over its mean",
+            found.depth_ratio * 100.0,
+            "%",
+            most_depth,
+        ),
+        FieldFigure::new(
+            "coil activations",
+            found.activations_per_min,
+            "1/min",
+            Some(30.0),
+        ),
+    ];
+    let varying = SoilPlan::varying(Texture::Medium);
+    let course = pass(varying, settings(function), 30.0).drive(model, calibration, |_, _| {});
+    FieldRun::of(figures, &course)
+}
+
+fn draft(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+    /// Set point that suits the coarse soil and the fine one, N.
+    const SET_N: f64 = 11_900.0;
+    let mut run = compared(model, calibration, Function::Draft, [Some(0.5), None]);
+    let mut soil = SoilPlan::uniform(Texture::Coarse);
+    soil.texture_changes = vec![(60.0, Texture::Fine)];
+    let settings = Settings {
+        draft_n: Some(SET_N),
+        ..settings(Function::Draft)
+    };
+    let samples = pass(soil, settings, 25.0).drive(model, calibration, |_, _| {});
+    let off: Vec<f64> = samples
+        .iter()
+        .map(|sample| sample.field.draft_n / SET_N - 1.0)
+        .collect();
+    let harder = off.iter().skip_while(|off| **off <= 0.5);
+    let late = harder.clone().take_while(|off| off.abs() > 0.05).count();
+    let lowest = harder.copied().fold(0.0, f64::min);
+    run.figures.extend([
+        FieldFigure::new(
+            "from coarse to fine soil: within 5 % after",
+            late as f64 * 1e-3,
+            "s",
+            Some(2.0),
+        ),
+        FieldFigure::new(
+            "from coarse to fine soil: draft below its set point by",
+            -lowest * 100.0,
+            "%",
+            Some(15.0),
+        ),
+    ]);
+    run
+}
+
+fn mix(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+    compared(model, calibration, Function::Mix, [Some(0.7), Some(6.0)])
+}
+
+fn slip(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+    const LIMIT: f64 = 0.2;
+    const PATCH_M: [f64; 2] = [60.0, 80.0];
+    let mut soil = SoilPlan::uniform(Texture::Medium);
+    soil.stretches = vec![Stretch::soft_patch(PATCH_M[0], PATCH_M[1] - PATCH_M[0])];
+    let settings = Settings {
+        slip_limit: Some(LIMIT),
+        ..settings(Function::Draft)
+    };
+    let samples = pass(soil, settings, 30.0).drive(model, calibration, |_, _| {});
+    let until = |at_m: f64| {
+        let before = |sample: &&FieldSample| sample.field.distance_m < at_m;
+        samples.iter().take_while(before).count()
+    };
+    let [from, to] = PATCH_M.map(until);
+    // The slip rises with the patch before the guard can act.
+    let later = samples.iter().take(to).skip(from + 1_500);
+    let most = later.map(|sample| sample.field.slip).fold(0.0, f64::max);
+    let depth_m = |at: usize| {
+        samples
+            .get(at)
+            .map_or(f64::NAN, |sample| sample.field.depth_m)
+    };
+    let change = (depth_m(to + 3_000) / depth_m(from.saturating_sub(1)) - 1.0).abs();
+    let figures = vec![
+        FieldFigure::new(
+            "slip at most, from 1.5 s on",
+            most * 100.0,
+            "%",
+            Some((LIMIT + 0.05) * 100.0),
+        ),
+        FieldFigure::new(
+            "change of the depth 3 s after the patch",
+            change * 100.0,
+            "%",
+            Some(5.0),
+        ),
+    ];
+    FieldRun::of(figures, &samples)
+}
+
+/// Drives with a lever over time, s, from a start with the implement raised.
+fn driven(
+    model: &Model,
+    calibration: &ValidCalibration,
+    (soil, terrain): (SoilPlan, Terrain),
+    (settings, speed_m_s): (Settings, f64),
+    time_s: f64,
+    lever_deg: impl Fn(&Coupling<'_>, &[FieldSample]) -> f64,
+) -> Vec<FieldSample> {
+    let field = (TractorConstants::ploughing(), soil);
+    let mut rig = FieldRig::new(model, calibration, field, terrain, 1);
+    let mut samples = Vec::new();
+    for _ in 0..(time_s * 1e3) as usize {
+        let lever_deg = lever_deg(rig.coupling(), &samples);
+        samples.push(rig.step(lever_deg, speed_m_s, &settings, |_| {}));
+    }
+    samples
+}
+
+fn depth(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+    const SPEED: f64 = 2.7;
+    const WORKS_FROM: usize = 25_000;
+    let terrain = Terrain::flat().with_undulation(Undulation {
+        wavelength_m: 10.0,
+        amplitude_m: 0.05,
+    });
+    let samples = driven(
+        model,
+        calibration,
+        (SoilPlan::varying(Texture::Medium), terrain),
+        (settings(Function::DepthLimit), SPEED),
+        85.0,
+        |coupling, samples| match samples.len() {
+            ..10_000 => RAISED_DEG,
+            _ => coupling.angle_deg(LINK_DEPTH_M),
+        },
+    );
+    let (_, work) = samples.split_at(WORKS_FROM);
+    let depths = work.iter().map(|sample| sample.field.depth_m);
+    let share = |of: &dyn Fn(f64) -> bool| {
+        depths.clone().filter(|depth_m| of(*depth_m)).count() as f64 / work.len() as f64 * 100.0
+    };
+    let mean_m = Spread::of(depths.clone()).mean;
+    let figures = vec![
+        FieldFigure::new(
+            "out of the ground",
+            share(&|depth_m| depth_m <= 0.0),
+            "%",
+            Some(0.0),
+        ),
+        FieldFigure::new(
+            "depth further than 10 % from its mean",
+            share(&|depth_m| (depth_m / mean_m - 1.0).abs() > 0.1),
+            "%",
+            Some(5.0),
+        ),
+        FieldFigure::new("mean depth", mean_m * 100.0, "cm", None),
+        FieldFigure::new(
+            "coil activations",
+            activations(work) as f64 / (work.len() as f64 / 60e3),
+            "1/min",
+            None,
+        ),
+    ];
+    FieldRun::of(figures, &work[..work.len().min(30_000)])
+}
+
+fn headland(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+    const HEADLAND_M: [f64; 2] = [60.0, 76.0];
+    let mut soil = SoilPlan::varying(Texture::Medium);
+    soil.stretches = vec![Stretch::headland(
+        HEADLAND_M[0],
+        HEADLAND_M[1] - HEADLAND_M[0],
+    )];
+    let is_headland =
+        |sample: &FieldSample| (HEADLAND_M[0]..HEADLAND_M[1]).contains(&sample.field.distance_m);
+    let samples = driven(
+        model,
+        calibration,
+        (soil, Terrain::flat()),
+        (settings(Function::Draft), SPEED_M_S),
+        65.0,
+        |coupling, samples| match samples.last() {
+            Some(last) if samples.len() >= 10_000 && !is_headland(last) => {
+                coupling.angle_deg(LINK_DEPTH_M)
+            }
+            _ => RAISED_DEG,
+        },
+    );
+    let reached = samples
+        .iter()
+        .take_while(|sample| sample.field.distance_m < HEADLAND_M[0])
+        .count();
+    let (before, after) = samples.split_at(reached);
+    let turned = after
+        .iter()
+        .take_while(|sample| is_headland(sample))
+        .count();
+    let (turn, work) = after.split_at(turned);
+    let earlier = &before[before.len().saturating_sub(10_000)..];
+    let depth_m = Spread::of(earlier.iter().map(|sample| sample.field.depth_m)).mean;
+    let out = turn
+        .iter()
+        .take_while(|sample| sample.field.depth_m > 0.0)
+        .count();
+    let back = work
+        .iter()
+        .take_while(|sample| sample.field.depth_m < 0.9 * depth_m)
+        .count();
+    let deepest_m = work
+        .iter()
+        .map(|sample| sample.field.depth_m)
+        .fold(0.0, f64::max);
+    let figures = vec![
+        FieldFigure::new(
+            "out of the ground after the lever was raised",
+            out as f64 * 1e-3,
+            "s",
+            None,
+        ),
+        FieldFigure::new(
+            "back at 90 % of the depth after it was lowered",
+            back as f64 * 1e-3,
+            "s",
+            None,
+        ),
+        FieldFigure::new(
+            "deepest then, over the depth before",
+            deepest_m / depth_m,
+            "",
+            None,
+        ),
+    ];
+    FieldRun::of(figures, &samples[reached.saturating_sub(5_000)..])
+}
+
+fn transport(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+    let ride = |km_h: f64| Ride {
+        body: BodyConstants::ploughing(),
+        roughness: class_c(),
+        speed_m_s: km_h / 3.6,
+    };
+    let mut figures = Vec::new();
+    for km_h in [12.0, 20.0] {
+        let found = RideComparison::of(model, &ride(km_h), calibration, SEEDS);
+        let damped = &found.damped;
+        let name = |what: &str| format!("{km_h:.0} km/h: {what}");
+        figures.extend([
+            FieldFigure::new(
+                &name("pitch acceleration over that of a hitch that holds"),
+                found.pitch_ratio(),
+                "",
+                Some(0.75),
+            ),
+            FieldFigure::new(
+                &name("pressure peak over the same"),
+                found.peak_ratio(),
+                "",
+                Some(0.8),
+            ),
+            FieldFigure::new(
+                &name("angle from the lever"),
+                damped.off_deg,
+                "deg",
+                Some(3.0),
+            ),
+            FieldFigure::new(
+                &name("square of the coil currents"),
+                damped.coil_a2,
+                "A2",
+                None,
+            ),
+            FieldFigure::new(
+                &name("coil activations"),
+                damped.activations_per_min,
+                "1/min",
+                None,
+            ),
+        ]);
+    }
+    FieldRun {
+        figures,
+        hitch: ride(20.0).course(model, calibration, 1),
+        field: Vec::new(),
+    }
+}
