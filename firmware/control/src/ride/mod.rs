@@ -136,7 +136,7 @@ fn lowest_carried(calibration: &Calibration) -> MilliDegree {
 /// The law.
 fn speed(swing: MilliBar, situation: &Situation, calibration: &Calibration) -> MicrometrePerSecond {
     let parameters = &calibration.ride;
-    let yielding = -mul_div(swing.0, parameters.gain.0, Divisor::THOUSAND);
+    let yielding = mul_div(swing.0, parameters.gain.0, Divisor::THOUSAND).saturating_neg();
     let off = situation.target - situation.travel;
     // A distance in micrometres over a time in milliseconds is a speed in millimetres a second.
     let centring = mul_div(off.0, 1_000, parameters.centring_time.divisor());
