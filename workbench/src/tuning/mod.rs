@@ -5,6 +5,7 @@
 //! the model has none: gains that are tuned without hysteresis do not suit a real valve.
 
 mod cost;
+pub mod figures;
 mod knobs;
 
 use cmaes::{CMAESOptions, DVector};
@@ -14,11 +15,11 @@ use hitch_quantities::{Calibration, ValidCalibration};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use figures::Figure;
 use knobs::{Least, tuned_by, with_values, without};
 
 use crate::closed_loop::{
-    Course, Move, MoveResult, Press, PressResult, PressSummary, Summary, courses, figures,
-    run_presses,
+    self, Course, Move, MoveResult, Press, PressResult, PressSummary, Summary, courses, run_presses,
 };
 
 pub use cost::{cost, press_cost};
@@ -64,6 +65,24 @@ pub struct Judged {
     pub presses: Option<PressSummary>,
     /// Cost, the objective of the search.
     pub cost: f64,
+}
+
+impl Judged {
+    /// The figures of this initial calibration beside those of a tuned one.
+    #[must_use]
+    pub fn compared(&self, after: &Self) -> Vec<Figure> {
+        figures::compared(
+            self.summary
+                .as_ref()
+                .zip(after.summary.as_ref())
+                .map(Into::into),
+            self.presses
+                .as_ref()
+                .zip(after.presses.as_ref())
+                .map(Into::into),
+            [self.cost, after.cost],
+        )
+    }
 }
 
 /// One value that was searched.
@@ -112,7 +131,7 @@ impl Trial {
         let results: Vec<MoveResult> = self
             .plants
             .iter()
-            .flat_map(|(plant, courses)| figures(plant, calibration, courses, AFTER_S))
+            .flat_map(|(plant, courses)| closed_loop::figures(plant, calibration, courses, AFTER_S))
             .collect();
         let pressed: Vec<PressResult> = self
             .plants
