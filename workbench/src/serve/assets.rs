@@ -37,6 +37,11 @@ const FILES: &[(&str, &str, &str)] = &[
     ("signals.js", SCRIPT, include_str!("assets/signals.js")),
     ("tabs.js", SCRIPT, include_str!("assets/tabs.js")),
     ("trial.js", SCRIPT, include_str!("assets/trial.js")),
+    (
+        "known_points.js",
+        SCRIPT,
+        include_str!("assets/known_points.js"),
+    ),
     ("mapping.js", SCRIPT, include_str!("assets/mapping.js")),
     ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
     (

@@ -190,8 +190,12 @@ interface ProposedLog {
 
 interface Signal {
   key: string;
+  /** Name for a reader. */
+  title: string;
   unit: string;
   units: string[];
+  /** Units of a sensor, with which two points have to be known. */
+  raw: string[];
 }
 
 /** Logs with equal columns. */
@@ -201,6 +205,9 @@ interface ProposedGroup {
   own_units: boolean;
   columns: { name: string; unit: string | null }[];
   taken: { channel: string; column: string; unit: string | null; reason: string; assumed: boolean }[];
+  /** What was assumed, and columns of a signal that are left out with the reason. */
   notes: string[];
+  /** The other columns that are not used. */
+  unused: string[];
   untold: string | null;
 }
