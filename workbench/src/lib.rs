@@ -15,6 +15,7 @@ pub mod error;
 pub mod explanation;
 pub mod fmu_export;
 pub mod heat_table;
+pub mod hold_arg;
 pub mod import;
 pub mod input_stream;
 pub mod interruption;

@@ -117,6 +117,7 @@ const CRATES: [Layers; 9] = [
                 "model_arg",
                 "baseline_arg",
                 "effect_arg",
+                "hold_arg",
                 "search_args",
                 "input_stream",
                 "heat_table",

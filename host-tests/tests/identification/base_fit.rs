@@ -103,7 +103,7 @@ fn fitted_with(
         Family::Dynamic => few_runs(campaign(&case)),
     };
     let experiment = Experiment::new(&measured, &declared);
-    let fit = fit_base_model(&experiment, &declared, &|_| {});
+    let fit = fit_base_model(&experiment, &declared, &[], &|_| {});
     (truth, fit)
 }
 

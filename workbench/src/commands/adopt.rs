@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use hitch_identification::constants::parameter::parameters;
 use hitch_identification::search::subset::{Accuracy, Options};
-use hitch_plant::Model;
 
 use crate::error::Error;
 use crate::explanation::{Base, Found, Posed, saving};
+use crate::hold_arg::HoldArg;
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
@@ -30,9 +29,8 @@ pub struct Args {
     /// Write the model of the machine to this file, updated during the search with the best model so far
     #[arg(long, value_name = "MACHINE.toml")]
     out: PathBuf,
-    /// Constant that is exact, by its name in the model file; several times for several
-    #[arg(long, value_name = "TABLE.KEY")]
-    hold: Vec<String>,
+    #[command(flatten)]
+    hold: HoldArg,
     /// Write a report to this file: self-contained HTML
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
@@ -59,11 +57,11 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let Posed {
         model, experiment, ..
     } = sheet.posed(&args.campaign)?;
-    check_held(&args.hold, &model)?;
+    let exact = args.hold.of(&model)?;
     let improved = saving(&model, Some(&args.out));
     let options = Options {
         constants: Accuracy::DataSheet,
-        exact: &args.hold,
+        exact,
         ..args.search.options()
     };
     let found = Found::new(experiment, model, options, &improved);
@@ -79,20 +77,5 @@ pub fn run(args: &Args) -> Result<(), Error> {
             shell_word(&args.campaign)
         );
         format!("{}\n{}", found.shown, wrapped(&next))
-    })
-}
-
-/// Whether all held constants are among those that are fitted.
-fn check_held(held: &[String], model: &Model) -> Result<(), Error> {
-    let mut known: Vec<String> = Vec::new();
-    for parameter in parameters(model.constants()) {
-        known.extend(parameter.name().filter(|name| !known.contains(name)));
-    }
-    let unknown = held.iter().find(|name| !known.contains(name));
-    unknown.map_or(Ok(()), |name| {
-        Err(Error::Usage(format!(
-            "--hold {name}: no constant that is fitted; there are {}",
-            known.join(", ")
-        )))
     })
 }

@@ -43,10 +43,17 @@ pub struct BaseFit {
     pub curves: Vec<CurvePoint>,
 }
 
-/// Fits the constants of a model to a campaign; `say` receives the current task.
+/// Fits the constants of a model to a campaign, but for those that are exact, by their names in a model file (`table.key`);
+/// `say` receives the current task.
 #[must_use]
-pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&str)) -> BaseFit {
+pub fn fit_base_model(
+    experiment: &Experiment,
+    declared: &Model,
+    exact: &[String],
+    say: &dyn Fn(&str),
+) -> BaseFit {
     let mut parameters = parameters(declared.constants());
+    parameters.retain(|one| one.name().is_none_or(|name| !exact.contains(&name)));
     parameters.extend(SENSORS.iter().map(Parameter::Sensor));
     let prior = Prior::new(declared.constants(), &parameters);
     let before = fit_base(Problem::new(experiment, declared));

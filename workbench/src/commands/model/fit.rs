@@ -8,6 +8,7 @@ use hitch_identification::data::experiment::Experiment;
 
 use crate::base_fit::ShownBaseFit;
 use crate::error::Error;
+use crate::hold_arg::HoldArg;
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
@@ -19,7 +20,8 @@ use crate::report::fit_page;
 #[command(
     after_help = "Example: hitch model fit lab-a --model my-hitch.toml --out fitted.toml --report fit.html\n\n\
     Every constant has a prior: the declared value with the tolerance of data sheets (flow curves 20 %, pressures 10 % \
-    to 20 %, bore 2 %, masses 10 %). What the campaign does not determine stays at its declared value and is named."
+    to 20 %, bore 2 %, masses 10 %). What the campaign does not determine stays at its declared value and is named. A constant \
+    that you have measured is kept with --hold."
 )]
 pub struct Args {
     /// Folder of the campaign
@@ -29,6 +31,8 @@ pub struct Args {
     /// Write the fitted model to this file
     #[arg(long, value_name = "FILE.toml")]
     out: PathBuf,
+    #[command(flatten)]
+    hold: HoldArg,
     #[command(flatten)]
     json: JsonArg,
     /// Write a report to this file: flow curves and constants with intervals, runs before and after
@@ -50,10 +54,11 @@ pub fn run(args: &Args) -> Result<(), Error> {
     ];
     let outputs = Outputs::check(wanted, &inputs)?;
     let model = args.model.load()?;
+    let exact = args.hold.of(&model)?;
     let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
-    let mut fit = fit_base_model(&experiment, &model, &|what| progress.say(what));
+    let mut fit = fit_base_model(&experiment, &model, exact, &|what| progress.say(what));
     drop(progress);
     fit.model.name = output::stem(&args.out);
     output::write_file(&args.out, hitch_model_file::to_toml(&fit.model).as_bytes())?;
