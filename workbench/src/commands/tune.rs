@@ -1,5 +1,6 @@
 //! `hitch tune`: tunes gains, ramps and limits for a plant.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use hitch_controller_host::calibration_file;
@@ -145,6 +146,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let after = trial
         .search(&base, &fixed, args.trials as usize, |count, cost| {
             progress.reach(count, format!("best cost {cost:.3}"));
+            ControlFlow::Continue(())
         })
         .ok_or_else(failed)?;
     drop(progress);

@@ -1,7 +1,5 @@
 //! JSON views of effects: catalogue, ranking, explanation.
 
-use std::sync::Arc;
-
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
 use hitch_identification::selection::candidate;
@@ -71,12 +69,8 @@ fn ranked(ranking: &Ranking) -> Value {
 
 /// The explanation, if it starts from the present model.
 pub fn explained(session: &Session) -> Value {
-    let present = &session.present().evaluated;
-    let explained = session.explained.as_ref();
-    match explained.filter(|explained| Arc::ptr_eq(&explained.of, present)) {
-        Some(explained) => found(explained),
-        None => Value::Null,
-    }
+    let explained = session.present_explanation();
+    explained.map_or(Value::Null, |explained| found(explained))
 }
 
 fn found(explained: &Explained) -> Value {
