@@ -26,10 +26,10 @@ const TOML: &str = "application/toml; charset=utf-8";
 pub fn routes() -> Router<Arc<Sessions>> {
     Router::new()
         .route("/{token}/api/model", get(model))
-        .route("/{token}/api/calibration", get(calibrated))
-        .route("/{token}/api/tuned", get(tuned))
-        .route("/{token}/api/report", get(report))
-        .route("/{token}/api/all", get(all))
+        .route("/{token}/api/save/calibration", get(calibrated))
+        .route("/{token}/api/save/tuned", get(tuned))
+        .route("/{token}/api/save/report", get(report))
+        .route("/{token}/api/save/all", get(all))
 }
 
 async fn model(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
