@@ -1,6 +1,6 @@
 // @ts-check
 /** The steps from data to a saved calibration, each with its state; pressing one opens its tab. */
-import { byId, element } from "./dom.js";
+import { byId, element, isWide } from "./dom.js";
 import { openTab } from "./tabs.js";
 
 /** Draws the steps.
@@ -16,5 +16,7 @@ export function drawWay(state) {
 function openStep(step) {
   openTab(step.tab);
   if (step.key === "data") byId("files-choose").focus();
-  else byId(`tab-${step.tab}`).focus();
+  else byId(`tab-${step.tab}`).focus({ preventScroll: true });
+  // On a phone, the plots stand above the panel.
+  if (!isWide()) byId(step.tab).scrollIntoView({ block: "start" });
 }

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use crate::explanation::{Candidate, Corrected, Step, explained as share_explained, parameters};
 use crate::serve::session::{Explained, Ranking, Session};
+use crate::words;
 
 /// Texts of an effect.
 pub fn described(effect: &dyn Effect) -> Value {
@@ -54,7 +55,7 @@ fn ranked(ranking: &Ranking) -> Value {
             "explains": shown.explains,
             "error_after": shown.error_after,
             "confidence": shown.confidence,
-            "in_words": in_words(shown.confidence),
+            "in_words": words::in_words(shown.confidence),
             "indistinguishable": shown.indistinguishable,
             "parameters": shown.parameters,
         }))
@@ -84,7 +85,7 @@ fn found(explained: &Explained) -> Value {
             "error_after": shown.error_after,
             "held_out_after": shown.held_out_after,
             "confidence": shown.confidence,
-            "in_words": in_words(shown.confidence),
+            "in_words": words::in_words(shown.confidence),
             "indistinguishable": shown.indistinguishable,
             "parameters": shown.parameters,
         })
@@ -114,15 +115,4 @@ fn constants(corrected: &Corrected, error_before: f64) -> Value {
         "moved": corrected.moved().collect::<Vec<_>>(),
         "curves": curves.map(curve).collect::<Vec<_>>(),
     })
-}
-
-/// A probability in words.
-fn in_words(confidence: f64) -> &'static str {
-    match confidence {
-        share if share >= 0.95 => "nearly certain",
-        share if share >= 0.7 => "likely",
-        share if share >= 0.3 => "possible",
-        share if share >= 0.005 => "unlikely",
-        _ => "very unlikely",
-    }
 }
