@@ -85,7 +85,7 @@ def calibration(page: Page, pictures: Path, view: str) -> None:
     names = sorted(zipfile.ZipFile(saving.value.path()).namelist())
     assert names == ["calibration.toml", "model.toml", "report.html", "tuned.toml"], names
     expect(step(page, "save").locator("small")).to_have_text("saved")
-    for button, name in (("#save-report", "report.html"), ("#save-calibration", "calibration.toml")):
+    for button, name in (("#save-report", "report.html"), ("#save-controller", "calibration.toml")):
         with page.expect_download() as saving:
             page.click(button)
         assert saving.value.suggested_filename == name

@@ -26,7 +26,6 @@ const TOML: &str = "application/toml; charset=utf-8";
 pub fn routes() -> Router<Arc<Sessions>> {
     Router::new()
         .route("/{token}/api/model", get(model))
-        .route("/{token}/api/save/calibration", get(calibrated))
         .route("/{token}/api/save/tuned", get(tuned))
         .route("/{token}/api/save/report", get(report))
         .route("/{token}/api/save/all", get(all))
@@ -37,12 +36,6 @@ async fn model(State(sessions): Known, Query(of): Query<Of>) -> Result<Response,
     let mut session = lock(&session);
     session.saved = Some(Arc::clone(&session.present().evaluated));
     Ok(attached(TOML, "model.toml", views::model_file(&session)))
-}
-
-async fn calibrated(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
-    let session = find(&sessions, &of.session)?;
-    let text = blocking(move || calibration_text(&lock(&session))).await??;
-    Ok(attached(TOML, "calibration.toml", text))
 }
 
 async fn tuned(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {

@@ -6,7 +6,7 @@ import { address, refusal } from "./server.js";
 /** Controls that save a file, with its address and its name.
  * @type {Record<string, [string, string]>} */
 const FILES = { "save": ["model", "model.toml"], "save-model": ["model", "model.toml"],
-  "save-calibration": ["save/calibration", "calibration.toml"], "save-tuned": ["save/tuned", "tuned.toml"],
+  "save-controller": ["calibration", "calibration.toml"], "save-tuned": ["save/tuned", "tuned.toml"],
   "save-report": ["save/report", "report.html"], "save-all": ["save/all", "hitch.zip"] };
 
 /** Connects the controls. `saved` is called when a file has been saved, and `run` starts a computation.

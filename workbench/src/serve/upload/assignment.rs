@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hitch_campaign::survey::{fits, run_columns};
+use hitch_campaign::survey::{check_source, fits, run_columns};
 use hitch_campaign::{Bench, Campaign, CampaignError};
 use hitch_plant::Linkage;
 use serde::Deserialize;
@@ -41,8 +41,13 @@ impl Source {
         }
         let column = group.columns.iter().find(|one| one.name == self.column)?;
         let unit = self.unit.as_deref().or(column.unit.as_deref());
+        // A voltage or a percentage fits every signal, but needs two points.
+        let converts = |unit: &str| {
+            let source = format!("{}:{unit}", self.column);
+            check_source(&self.channel, &source).is_ok()
+        };
         match unit {
-            Some(unit) if fits(unit, &self.channel) => None,
+            Some(unit) if fits(unit, &self.channel) && converts(unit) => None,
             Some(unit) => Some(format!(
                 "\"{}\" is in {unit}, which is not a unit of {}",
                 self.column,
