@@ -1,6 +1,6 @@
 """Files opened in the page of `hitch serve`, in a headless Chromium: a log of another logger is assigned and opened.
 
-Called with the page's address, a log, a broken log, the browser, and a folder for pictures.
+Called with the page's address, a log, a broken log, a log with a voltage, the browser, and a folder for pictures.
 """
 
 import sys
@@ -63,11 +63,33 @@ def refused(page: Page, broken: Path, pictures: Path) -> None:
     expect(page.locator("#title")).to_contain_text("demonstration")
 
 
+def points(page: Page, log: Path, pictures: Path) -> None:
+    """A voltage is left out with its reason, and assigned by two known points of its sensor."""
+    page.wait_for_selector("#views[data-ready]")
+    with page.expect_file_chooser() as choosing:
+        page.locator("#files-choose").press("Enter")
+    choosing.value.set_files(log)
+    expect(page.locator(".left-out")).to_contain_text('"Zylinderdruck": it is in V')
+    page.get_by_label("Column for cylinder pressure").select_option("Zylinderdruck")
+    expect(page.get_by_label("Unit of cylinder pressure")).to_have_value("raw:V")
+    group = page.get_by_role("group", name="Two known points of cylinder pressure")
+    for field, value in zip(group.locator("input").all(), ("0.5", "0", "4.5", "250")):
+        field.fill(value)
+    page.locator("#files").screenshot(path=pictures / "files_points.png")
+    assert_fits(page)
+    assert_accessible(page)
+    page.click("#files-open")
+    expect(page.locator("#title")).to_contain_text(log.stem)
+    heads = page.locator("#cells thead th").all_inner_texts()
+    assert "cylinder pressure" in heads, heads
+
+
 def main() -> None:
-    address, log, broken, name, folder = sys.argv[1:6]
+    address, log, broken, volts, name, folder = sys.argv[1:7]
     with story(name, folder) as (browser, pictures, faults):
         for view, options in {"desktop": DESKTOP, "phone": PHONE, "dark": DARK}.items():
             open_log(opened(browser, address, options, faults), Path(log), pictures, view)
+        points(opened(browser, address, DESKTOP, faults), Path(volts), pictures)
         # A refused request is a message of the console.
         refused(opened(browser, address, DESKTOP, []), Path(broken), pictures)
     print("the files went well")

@@ -46,7 +46,7 @@ def assert_in_view(page: Page) -> None:
 def tabs(page: Page, pictures: Path, window: str) -> None:
     """The plots stay beside each tab of the column; the tabs are reached by keys."""
     page.locator("#tab-map").focus()
-    for tab in ("map", "missing", "model"):
+    for tab in ("map", "missing", "model", "controller"):
         expect(page.locator(f"#{tab}")).to_be_visible()
         assert_in_view(page)
         page.screenshot(path=pictures / f"instrument_{window}_{tab}.png")

@@ -95,7 +95,11 @@ def whole_story(page: Page, pictures: Path) -> None:
     expect(page.locator("#place")).to_contain_text("Signature")
     page.wait_for_function("document.getElementById('plot').data.some((line) => line.legendgroup === 'signature')")
     page.wait_for_timeout(300)
+    # The window of the picture in the documentation.
+    page.set_viewport_size({"width": 1400, "height": 760})
+    page.wait_for_timeout(300)
     page.screenshot(path=pictures / "signature.png")
+    page.set_viewport_size(DESKTOP["viewport"])
     assert_accessible(page)
 
     best.locator("button.add").press("Enter")

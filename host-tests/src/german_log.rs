@@ -4,6 +4,25 @@
 const HEADER: &str = "Zeit [s];Ventil Heben Strom [mA];Ventil Senken Strom [mA];Pumpendruck [bar];Zylinderdruck [bar];\
      Volumenstrom [l/min];Winkel Hubwelle [°]";
 
+/// [`german_log`] with the cylinder pressure as the voltage of its sensor: 0.5 V at 0 bar, 4.5 V at 250 bar.
+///
+/// # Panics
+/// If the shipped log has other columns.
+#[must_use]
+pub fn german_log_in_volts() -> String {
+    let plain = german_log().replace("Zylinderdruck [bar]", "Zylinderdruck [V]");
+    let mut lines = plain.lines();
+    let mut text = format!("{}\n", lines.next().expect("a header"));
+    for line in lines {
+        let mut cells: Vec<String> = line.split(';').map(str::to_owned).collect();
+        if let Ok(bar) = cells[4].replace(',', ".").parse::<f64>() {
+            cells[4] = format!("{:.6}", 0.5 + bar * 4.0 / 250.0).replace('.', ",");
+        }
+        text += &(cells.join(";") + "\n");
+    }
+    text
+}
+
 /// The shipped log of a lowering move with 150 kg, as such a log.
 ///
 /// # Panics

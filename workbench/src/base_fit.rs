@@ -109,12 +109,33 @@ impl ShownBaseFit {
 
 impl ShownConstant {
     /// Column headings of [`ShownConstant::cells`].
-    pub const HEADINGS: [&'static str; 5] =
-        ["constant", "declared", "fitted", "95 % interval", "unit"];
+    pub const HEADINGS: [&'static str; 6] = [
+        "constant",
+        "declared",
+        "fitted",
+        "95 % interval",
+        "unit",
+        "",
+    ];
+
+    /// Whether the fit moved it further than the tolerance of its data sheet.
+    #[must_use]
+    pub fn is_beyond(&self) -> bool {
+        (self.fitted - self.declared).abs() > self.tolerance.abs()
+    }
+
+    /// The mark of a constant that [`ShownConstant::is_beyond`]; else empty.
+    #[must_use]
+    pub fn mark(&self) -> &'static str {
+        match self.is_beyond() {
+            true => "beyond its tolerance",
+            false => "",
+        }
+    }
 
     /// Its row in a table.
     #[must_use]
-    pub fn cells(&self) -> [String; 5] {
+    pub fn cells(&self) -> [String; 6] {
         [
             self.name.clone(),
             digits(self.declared),
@@ -124,6 +145,7 @@ impl ShownConstant {
                 false => format!("{} to {}", digits(self.low), digits(self.high)),
             },
             self.unit.to_owned(),
+            self.mark().to_owned(),
         ]
     }
 

@@ -1,6 +1,7 @@
 //! Library of the program `hitch`.
 #![forbid(unsafe_code)]
 
+pub mod archive;
 pub mod base_fit;
 pub mod baseline_arg;
 pub mod calibrate;
@@ -8,6 +9,7 @@ pub mod cli;
 pub mod closed_loop;
 pub mod commands;
 pub mod comparison;
+pub mod data_sheet;
 pub mod demonstration;
 pub mod ecu;
 pub mod effect_arg;

@@ -1,6 +1,6 @@
 //! Own tolerances of constants, from the command line.
 
-use hitch_identification::constants::tolerances::{Own, Tolerances, check_name};
+use hitch_identification::constants::tolerances::{Own, Tolerances};
 use hitch_plant::Model;
 
 use crate::error::Error;
@@ -27,8 +27,7 @@ impl ToleranceArgs {
     pub fn applied_to(&self, model: Model) -> Result<(Tolerances, Model), Error> {
         let (mut own, mut model) = (Tolerances::default(), model);
         for name in &self.hold {
-            check_name(name, model.constants()).map_err(of("--hold"))?;
-            own.hold(name);
+            own.hold(name, model.constants()).map_err(of("--hold"))?;
         }
         for text in &self.tolerance {
             let (name, value) = parts(text, "--tolerance", "NAME=VALUE or NAME=SHARE%")?;

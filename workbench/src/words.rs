@@ -82,6 +82,24 @@ pub fn sentences(words: &[Word]) -> String {
     words.iter().map(sentence).collect::<Vec<_>>().join(" ")
 }
 
+/// A probability in words.
+#[must_use]
+pub fn in_words(confidence: f64) -> &'static str {
+    match confidence {
+        share if share >= 0.95 => "nearly certain",
+        share if share >= 0.7 => "likely",
+        share if share >= 0.3 => "possible",
+        share if share >= 0.005 => "unlikely",
+        _ => "very unlikely",
+    }
+}
+
+/// A probability in words and as a percentage: beside a 95 % interval, a bare number is taken for one.
+#[must_use]
+pub fn probable(confidence: f64) -> String {
+    format!("{}, {:.0} %", in_words(confidence), 100.0 * confidence)
+}
+
 /// The name of a model with the kind of its plant: `nominal` alone says nothing of it.
 #[must_use]
 pub fn named(model: &Model) -> String {

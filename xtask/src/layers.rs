@@ -111,7 +111,7 @@ const CRATES: [Layers; 9] = [
         sources: "workbench/src",
         order: &[
             &["error", "progress", "text"],
-            &["output", "run_block"],
+            &["archive", "output", "run_block"],
             &["outputs"],
             &[
                 "interruption",
@@ -125,7 +125,13 @@ const CRATES: [Layers; 9] = [
                 "web",
                 "words",
             ],
-            &["demonstration", "valve_survey", "base_fit", "next_command"],
+            &[
+                "data_sheet",
+                "demonstration",
+                "valve_survey",
+                "base_fit",
+                "next_command",
+            ],
             &[
                 "calibrate",
                 "closed_loop",

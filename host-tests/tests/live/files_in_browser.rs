@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use host_tests::german_log::german_log;
+use host_tests::german_log::{german_log, german_log_in_volts};
 use host_tests::page_server::PageServer;
 use host_tests::python::{environment, run, scripts};
 use host_tests::refusal;
@@ -17,7 +17,9 @@ fn a_log_of_another_logger_is_assigned_and_opened() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let python = environment(&scripts().join("browser.txt"), folder).unwrap();
     let dir = TempDir::new().unwrap();
-    let [log, broken] = ["Montag_150kg.csv", "lift.csv"].map(|name| dir.path().join(name));
+    let names = ["Montag_150kg.csv", "lift.csv", "Volt_150kg.csv"];
+    let [log, broken, volts] = names.map(|name| dir.path().join(name));
+    fs::write(&volts, german_log_in_volts()).unwrap();
     fs::write(&log, german_log()).unwrap();
     fs::write(&broken, refusal::log().replacen("16.0", "oops", 1)).unwrap();
     let server = PageServer::start(dir.path(), &[]);
@@ -25,7 +27,7 @@ fn a_log_of_another_logger_is_assigned_and_opened() {
     command
         .arg(scripts().join("files_in_browser.py"))
         .arg(&server.page)
-        .args([&log, &broken])
+        .args([&log, &broken, &volts])
         .arg("chromium")
         .arg(folder.join("pictures"))
         .env("PYTHONPYCACHEPREFIX", folder.join("python-cache"));

@@ -29,3 +29,4 @@ mod second_model;
 mod serial_adapter;
 mod serve;
 mod upload;
+mod way_in_browser;

@@ -3,7 +3,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use host_tests::german_log::german_log;
+use host_tests::german_log::{german_log, german_log_in_volts};
 use host_tests::page_server::{Answer, PageServer};
 use host_tests::program::hitch;
 use host_tests::refusal;
@@ -119,6 +119,54 @@ fn a_german_log_is_proposed_edited_and_opened_beside_another_tab() {
         state["error"]
     );
     assert_eq!(other.state(), before);
+}
+
+#[test]
+fn a_voltage_is_opened_by_two_known_points_of_its_sensor() {
+    let dir = TempDir::new().unwrap();
+    let server = PageServer::start(dir.path(), &[]);
+    let (plain, volts) = (Tab::new(&server), Tab::new(&server));
+    assert_eq!(plain.send("m_150kg.csv", &german_log()).status, 200);
+    let assignment = proposed(&plain.survey().json());
+    assert_eq!(plain.post("open", assignment).status, 200);
+
+    assert_eq!(
+        volts.send("m_150kg.csv", &german_log_in_volts()).status,
+        200
+    );
+    let proposal = volts.survey().json();
+    let notes = proposal["groups"][0]["notes"].to_string();
+    assert!(
+        notes.contains("Zylinderdruck") && notes.contains("it is in V") && !notes.contains("--map"),
+        "{notes}"
+    );
+    let signals = proposal["signals"].as_array().unwrap();
+    let pressure = signals
+        .iter()
+        .find(|one| one["key"] == "cylinder_pressure_bar");
+    let raw = &pressure.unwrap()["raw"];
+    for unit in ["V", "mA", "counts"] {
+        assert!(raw.as_array().unwrap().contains(&json!(unit)), "{raw}");
+    }
+    let mut assignment = proposed(&proposal);
+    let sources = assignment["groups"][0].as_array_mut().unwrap();
+    sources.push(
+        json!({ "channel": "cylinder_pressure_bar", "column": "Zylinderdruck", "unit": "V" }),
+    );
+    let refused = volts.post("open", assignment.clone());
+    assert_eq!(refused.status, 422);
+    let fault = refused.json()["fault"].to_string();
+    assert!(
+        fault.contains("which is not a unit of cylinder pressure")
+            && !fault.contains("[columns]")
+            && !fault.contains(" = "),
+        "{fault}"
+    );
+    source(&mut assignment, "cylinder_pressure_bar")["points"] = json!([[0.5, 0.0], [4.5, 250.0]]);
+    assert_eq!(volts.post("open", assignment).status, 200);
+    let error = |tab: &Tab| tab.state()["error"].as_f64().unwrap();
+    let (expected, found) = (error(&plain), error(&volts));
+    assert!((found / expected - 1.0).abs() < 1e-3, "{expected} {found}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `hitch tune`: tunes gains, ramps and limits for a plant.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use hitch_controller_host::calibration_file;
@@ -19,7 +20,8 @@ use crate::output::{self, JsonArg};
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::report::tuning_page;
-use crate::text::{Table, known};
+use crate::text::Table;
+use crate::tuning::figures::{self, Figure};
 use crate::tuning::{Change, Judged, Trial};
 
 /// Arguments of `hitch tune`.
@@ -76,6 +78,8 @@ pub struct Tuned {
     before: Figures,
     /// Figures of the tuned calibration.
     after: Figures,
+    /// The figures that have names in the text, with their limits.
+    figures: Vec<Figure>,
 }
 
 /// Figures of a calibration on the plant and its neighbours.
@@ -102,6 +106,7 @@ impl Tuned {
             changes: trial.changes(&before.calibration, &after.calibration),
             before: figures(before),
             after: figures(after),
+            figures: before.compared(after),
         }
     }
 }
@@ -141,6 +146,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let after = trial
         .search(&base, &fixed, args.trials as usize, |count, cost| {
             progress.reach(count, format!("best cost {cost:.3}"));
+            ControlFlow::Continue(())
         })
         .ok_or_else(failed)?;
     drop(progress);
@@ -174,7 +180,7 @@ fn report(
     let page = tuning_page::page(&tuning_page::Shown {
         model,
         changes: &tuned.changes,
-        figures: &figures(tuned),
+        figures: &tuned.figures,
         moves: both::<LoopRun>(&moved),
         presses: both::<PressRun>(&pressed),
     });
@@ -209,60 +215,10 @@ fn told(tuned: &Tuned) -> String {
             format!("{:.3}", change.after),
         ]);
     }
-    let mut table = Table::new(["figure", "limit", "before", "after"]);
-    for row in figures(tuned) {
-        table.row(row);
+    let mut table = Table::new(Figure::HEADINGS);
+    for figure in &tuned.figures {
+        table.row(figure.cells());
     }
-    format!("{values}\n{table}")
-}
-
-/// Name, limit, value before and after of each figure.
-fn figures(tuned: &Tuned) -> Vec<[String; 4]> {
-    let (before, after) = (&tuned.before, &tuned.after);
-    let mut rows = Vec::new();
-    if let (Some(before), Some(after)) = (&before.summary, &after.summary) {
-        rows.extend(move_figures(before, after));
-    }
-    if let (Some(before), Some(after)) = (&before.presses, &after.presses) {
-        rows.extend(press_figures(before, after));
-    }
-    rows.push(figure("cost", None, before.cost, after.cost));
-    rows
-}
-
-fn figure(name: &str, bar: Option<f64>, old: f64, new: f64) -> [String; 4] {
-    let bar = bar.map_or_else(String::new, |bar| format!("{bar:.2}"));
-    [name.to_owned(), bar, known(old, 3), known(new, 3)]
-}
-
-fn move_figures(before: &Summary, after: &Summary) -> [[String; 4]; 6] {
-    let of = |name: &str, bar: f64, value: fn(&Summary) -> f64| {
-        figure(name, Some(bar), value(before), value(after))
-    };
-    [
-        of("time ratio, median", 1.15, |all| all.ratio_median),
-        of("time ratio, 95 %", 1.4, |all| all.ratio_p95),
-        of("overshoot, deg", 0.3, |all| all.overshoot_max_deg),
-        of("final error, deg", 0.3, |all| all.final_error_max_deg),
-        of("pressure swing", 1.5, |all| all.pressure_swing_ratio_max),
-        of("coil activations after arrival", 0.0, |all| {
-            f64::from(all.switched_on_after)
-        }),
-    ]
-}
-
-fn press_figures(before: &PressSummary, after: &PressSummary) -> [[String; 4]; 4] {
-    let of = |name: &str, bar: Option<f64>, value: fn(&PressSummary) -> f64| {
-        figure(name, bar, value(before), value(after))
-    };
-    [
-        of("button: error of the steady speed", Some(0.05), |all| {
-            all.speed_error_max
-        }),
-        of("button: overshoot of the speed", None, |all| {
-            all.speed_overshoot_max
-        }),
-        of("button: latest start, s", None, |all| all.start_delay_max_s),
-        of("button: latest stop, s", None, |all| all.stop_delay_max_s),
-    ]
+    let said = figures::sentence(&tuned.figures).unwrap_or_default();
+    format!("{values}\n{table}\n{said}\n")
 }

@@ -62,6 +62,12 @@ impl Found {
         let explained = Explained::new(&experiment, &model, options, &|what| {
             progress.say(format!("trying {what}"));
         });
+        Self::finished(experiment, model, explained)
+    }
+
+    /// An explanation that has been made, with its inputs.
+    #[must_use]
+    pub fn finished(experiment: Experiment, model: Model, explained: Explained) -> Self {
         let Explained {
             explanation,
             suggestion,

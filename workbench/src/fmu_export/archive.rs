@@ -1,15 +1,11 @@
 //! The archive of a unit.
 
-use std::io::{Cursor, Write};
-
 use hitch_fmu::content::{Content, Kind};
 use hitch_fmu::version::Version;
 use hitch_input::source_file::SourceFile;
-use zip::ZipWriter;
-use zip::result::ZipError;
-use zip::write::SimpleFileOptions;
 
 use super::library::platform;
+use crate::archive::zipped;
 use crate::error::Error;
 
 /// The bytes of a unit of a version of the standard with the content of `file` and the `library`.
@@ -33,18 +29,5 @@ pub fn archive(
         (format!("resources/{}", kind.file()), file.text.as_bytes()),
         (binary, library),
     ];
-    zipped(&entries).map_err(|error| Error::Failed(format!("the archive cannot be made: {error}")))
-}
-
-/// An archive of files: name and bytes. It has no times, so that the same content makes the same archive.
-fn zipped(entries: &[(String, &[u8])]) -> Result<Vec<u8>, ZipError> {
-    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, bytes) in entries {
-        writer.start_file(
-            name.as_str(),
-            SimpleFileOptions::default().unix_permissions(0o755),
-        )?;
-        writer.write_all(bytes)?;
-    }
-    Ok(writer.finish()?.into_inner())
+    zipped(&entries)
 }

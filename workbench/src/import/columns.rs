@@ -3,6 +3,7 @@
 use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, is_absolute, run_columns};
 
 use super::doubts::{is_percentage, is_position, not_usable, says_degrees, two_points, why_not};
+use super::note::Note;
 use super::times::time;
 use super::words::{CHANNELS, Words};
 
@@ -55,7 +56,7 @@ pub struct Mapping {
     /// In the order of a run's columns.
     pub taken: Vec<Taken>,
     /// What was assumed, and columns of a known quantity that were left out; one line each.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// A column that could not be determined.
@@ -179,7 +180,8 @@ impl Mapping {
         let mut mapping = Self::default();
         let wrong = |what: String| Untold {
             what,
-            mend: "choose another column or unit".to_owned(),
+            mend: "choose another column or unit, or enter two known points of the sensor"
+                .to_owned(),
         };
         for (channel, source) in named {
             if mapping.has(channel) {
@@ -238,28 +240,36 @@ impl Mapping {
                 (is_missing || column.fault.is_some()) && words.names(column)
             });
             let reason = known.and_then(|words| why_not(words.channel, column));
-            notes.extend(reason.map(|reason| format!("left out: \"{}\": {reason}", column.name)));
+            notes.extend(reason.map(|reason| Note {
+                what: format!("left out: \"{}\": {}", column.name, reason.what),
+                ..reason
+            }));
         }
         for taken in &self.taken {
             let column = self.source_of(columns, taken.channel);
             let unit = column.and_then(|column| column.unit.as_deref());
             if unit.is_some_and(is_absolute) {
-                notes.push(format!(
+                notes.push(Note::plain(format!(
                     "assumed: {} is above vacuum; 1.013 bar of air are subtracted",
                     taken.channel
-                ));
+                )));
             }
             if let Some(column) = column.filter(|column| {
                 let is_proposed = taken.is_proposed();
                 is_proposed && taken.channel == ANGLE && is_percentage(&column.values)
             }) {
-                notes.push(format!(
-                    "assumed: \"{}\" is in {} as the log states, though its values from 0 to 100 rest on an end as \
-                     percentages do; for percentages give {}",
-                    column.name,
-                    unit.unwrap_or("deg"),
-                    two_points(ANGLE, &column.name, "%")
-                ));
+                notes.push(Note {
+                    what: format!(
+                        "assumed: \"{}\" is in {} as the log states, though its values from 0 to 100 rest on an end as \
+                         percentages do",
+                        column.name,
+                        unit.unwrap_or("deg")
+                    ),
+                    mend: Some(format!(
+                        "for percentages give {}",
+                        two_points(ANGLE, &column.name, "%")
+                    )),
+                });
             }
         }
         self.notes = notes;

@@ -137,8 +137,9 @@ fn shown(found: &Columns, mapping: &Mapping) -> String {
     for taken in &mapping.taken {
         text += &line(taken, width);
     }
-    for note in found.notes.iter().chain(&mapping.notes) {
-        text += &(indented(note, 2) + "\n");
+    let own = mapping.notes.iter().map(ToString::to_string);
+    for note in found.notes.iter().cloned().chain(own) {
+        text += &(indented(&note, 2) + "\n");
     }
     let is_taken = |name: &str| {
         let mut taken = mapping.taken.iter();

@@ -2,6 +2,8 @@
 
 use hitch_campaign::survey::{LogColumn, fits, is_in, without_group, words};
 
+use super::note::Note;
+
 /// Why a column that the user names cannot be used.
 pub fn not_usable(columns: &[LogColumn], name: &str) -> Option<String> {
     if let Some(column) = columns.iter().find(|column| column.name == name) {
@@ -26,22 +28,32 @@ pub fn not_usable(columns: &[LogColumn], name: &str) -> Option<String> {
 }
 
 /// Why a column of a quantity was not proposed; `None` for an unknown reason.
-pub fn why_not(channel: &str, column: &LogColumn) -> Option<String> {
+pub fn why_not(channel: &str, column: &LogColumn) -> Option<Note> {
     if let Some(fault) = &column.fault {
-        return Some(fault.clone());
+        return Some(Note::plain(fault.clone()));
     }
     let has_numbers = column.values.iter().any(|value| value.is_finite());
     match column.unit.as_deref() {
-        _ if !has_numbers && !column.values.is_empty() => Some("it contains no numbers".to_owned()),
-        Some(unit @ ("%" | "V")) => Some(format!(
-            "it is in {unit}; give two points, as in {}",
-            two_points(channel, &column.name, unit)
-        )),
-        Some(unit) if !fits(unit, channel) => Some(format!("{unit} is not a unit of {channel}")),
-        _ => Some(format!(
-            "several columns may be {channel}; assign one with --map {channel}=\"{}\"",
-            column.name
-        )),
+        _ if !has_numbers && !column.values.is_empty() => {
+            Some(Note::plain("it contains no numbers".to_owned()))
+        }
+        Some(unit @ ("%" | "V")) => Some(Note {
+            what: format!("it is in {unit}"),
+            mend: Some(format!(
+                "give two points, as in {}",
+                two_points(channel, &column.name, unit)
+            )),
+        }),
+        Some(unit) if !fits(unit, channel) => {
+            Some(Note::plain(format!("{unit} is not a unit of {channel}")))
+        }
+        _ => Some(Note {
+            what: format!("several columns may be {channel}"),
+            mend: Some(format!(
+                "assign one with --map {channel}=\"{}\"",
+                column.name
+            )),
+        }),
     }
 }
 

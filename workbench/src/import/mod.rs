@@ -8,6 +8,7 @@ mod doubts;
 pub mod files;
 pub mod load;
 pub mod manifest;
+pub mod note;
 #[cfg(test)]
 mod tests;
 pub mod times;
@@ -16,3 +17,4 @@ pub mod words;
 pub use columns::{Kind, Mapping, Taken, Untold};
 pub use files::{Columns, Files};
 pub use load::load_in_name;
+pub use note::Note;

@@ -77,7 +77,12 @@ fn a_column_that_cannot_be_used_is_listed_with_its_reason() {
     columns[4].unit = Some("%".to_owned());
     columns[5].fault = Some("it has texts".to_owned());
     let mapping = proposed(&columns, &[]);
-    let notes = mapping.notes.join("\n");
+    let notes = mapping
+        .notes
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join("\n");
     for expected in [
         "left out: \"Pump Pressure\": it is in %; give two points, as in --map pump_pressure_bar=\"Pump Pressure:% ",
         "left out: \"Cylinder Pressure\": it has texts",
@@ -128,7 +133,12 @@ fn a_position_without_a_unit_is_refused() {
     assert!(has(&proposed(&columns, &[]), "rocker_angle_deg"));
     columns[3].name = "Rocker Angle".to_owned();
     columns[3].unit = Some("deg".to_owned());
-    let notes = proposed(&columns, &[]).notes.join("\n");
+    let notes = proposed(&columns, &[])
+        .notes
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join("\n");
     assert!(
         notes.contains("assumed: \"Rocker Angle\" is in deg as the log states, though"),
         "{notes}"
@@ -165,7 +175,12 @@ fn times_of_another_rate_are_in_the_unit_of_the_first() {
     slow.times = Some("Time slow".to_owned());
     columns[4].times = slow.times.clone();
     columns.push(slow);
-    let notes = proposed(&columns, &[]).notes.join("\n");
+    let notes = proposed(&columns, &[])
+        .notes
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join("\n");
     assert!(
         notes.contains("assumed: \"Time slow\" is in s, as \"Time\""),
         "{notes}"

@@ -4,7 +4,7 @@ use hitch_campaign::survey::{
     LogColumn, TIMES, check_source, is_time_name, is_unit_of_time, unit_size_s, words,
 };
 
-use super::{Mapping, Taken, Untold};
+use super::{Mapping, Note, Taken, Untold};
 
 /// Longest step of a log whose unit is assumed, s.
 const LONGEST_STEP_S: f64 = 0.5;
@@ -282,7 +282,7 @@ impl Mapping {
             used.extend(base.filter(|base| is_other && !used.contains(base)));
         }
         let notes = others(main, unit.as_deref().or(main.unit.as_deref()), &used)?;
-        self.notes.extend(notes);
+        self.notes.extend(notes.into_iter().map(Note::plain));
         Ok(())
     }
 

@@ -91,18 +91,22 @@ fn candidates(candidates: &[Candidate]) -> Markup {
             .iter()
             .map(ToString::to_string)
             .collect();
-        let others = match candidate.indistinguishable.is_empty() {
-            true => "–".to_owned(),
-            false => candidate.indistinguishable.join(", "),
+        let others = &candidate.indistinguishable;
+        let name = match others.is_empty() {
+            true => candidate.name(),
+            false => format!(
+                "{}\nnot to be told from {}",
+                candidate.name(),
+                others.join(", ")
+            ),
         };
         vec![
-            candidate.name(),
-            parameters.join("; "),
+            name,
+            parameters.join("\n"),
             format!("{:.1} %", 100.0 * candidate.explains),
             format!("{:.2}", candidate.error_after),
-            format!("{:.2}", candidate.confidence),
+            words::probable(candidate.confidence),
             format!("{:.2}", candidate.detectability),
-            others,
         ]
     };
     let header = [
@@ -112,7 +116,6 @@ fn candidates(candidates: &[Candidate]) -> Markup {
         "error after",
         "confidence",
         "detectability",
-        "indistinguishable from",
     ];
     let rows: Vec<Vec<String>> = candidates.iter().map(row).collect();
     let (first, others) = rows.split_at(BARS.min(rows.len()));

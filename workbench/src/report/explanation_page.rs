@@ -133,22 +133,21 @@ fn steps(steps: &[Step]) -> Markup {
     let row = |step: &Step| {
         let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
         let twins: Vec<String> = step.alternatives.iter().map(ToString::to_string).collect();
+        let name = match twins.is_empty() {
+            true => step.name(),
+            false => format!("{}\nnot to be told from {}", step.name(), twins.join(", ")),
+        };
         vec![
-            step.name(),
-            parameters.join("; "),
+            name,
+            parameters.join("\n"),
             format!("{:.2} → {:.2}", step.error_before, step.error_after),
             format!(
                 "{} → {}",
                 known(step.held_out_before, 2),
                 known(step.held_out_after, 2)
             ),
-            format!("{:.2}", step.confidence),
+            words::probable(step.confidence),
             format!("{:.2}", step.detectability),
-            if twins.is_empty() {
-                "–".to_owned()
-            } else {
-                twins.join(", ")
-            },
         ]
     };
     let header = [
@@ -158,7 +157,6 @@ fn steps(steps: &[Step]) -> Markup {
         "held-out error",
         "confidence",
         "detectability",
-        "indistinguishable from",
     ];
     let rows: Vec<Vec<String>> = steps.iter().map(row).collect();
     html! {

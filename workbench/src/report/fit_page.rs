@@ -80,7 +80,7 @@ fn sections(shown: &Shown<'_>) -> Markup {
         ))
         h2 { "Constants" }
         (page::table(
-            &["constant", "unit", "declared", "tolerance, ±1 σ", "fitted", "95 % interval", "determined"],
+            &["constant", "unit", "declared", "tolerance, ±1 σ", "fitted", "95 % interval", "determined", "moved"],
             &told.constants.iter().map(constant).collect::<Vec<_>>(),
         ))
         p.note {
@@ -191,6 +191,7 @@ fn constant(constant: &ShownConstant) -> Vec<String> {
         digits(constant.fitted),
         format!("{} to {}", digits(constant.low), digits(constant.high)),
         determined(constant.determined),
+        constant.mark().to_owned(),
     ]
 }
 

@@ -38,17 +38,23 @@ pub fn page(title: &str, content: &Markup) -> String {
     document.into_string()
 }
 
-/// A table of text cells with a header row; the first column has the names of the rows. A long one is folded.
+/// A table of text cells with a header row; the first column has the names of the rows. Cells may have several lines. A long
+/// table is folded.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> Markup {
     let table = html! {
         div.scroll tabindex="0" role="group" aria-label="Table" { table {
             thead { tr { @for name in header { th scope="col" { (name) } } } }
             tbody { @for row in rows { tr { @for (i, cell) in row.iter().enumerate() {
-                @if i == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                @if i == 0 { th scope="row" { (lines(cell)) } } @else { td { (lines(cell)) } }
             } } } }
         } }
     };
     folded(&table, rows.len())
+}
+
+/// The lines of a cell.
+fn lines(cell: &str) -> Markup {
+    html! { @for (line, text) in cell.lines().enumerate() { @if line > 0 { br; } (text) } }
 }
 
 /// A table, folded if it has many rows.

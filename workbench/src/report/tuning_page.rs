@@ -10,6 +10,7 @@ use super::variants_page::every_press;
 use crate::closed_loop::{LoopRun, PressRun};
 use crate::text::known;
 use crate::tuning::Change;
+use crate::tuning::figures::{self, Figure};
 
 /// A tuned calibration.
 #[derive(Debug, Clone, Copy)]
@@ -18,8 +19,8 @@ pub struct Shown<'a> {
     pub model: &'a Model,
     /// The changed values.
     pub changes: &'a [Change],
-    /// Name, limit, value before and after of each figure of the search, as text.
-    pub figures: &'a [[String; 4]],
+    /// Figures of the search.
+    pub figures: &'a [Figure],
     /// Moves with the initial calibration, and with the tuned one; `None` without moves.
     pub moves: Option<[&'a LoopRun; 2]>,
     /// Presses of the button with both; `None` without presses.
@@ -35,7 +36,11 @@ pub fn page(shown: &Shown) -> String {
 }
 
 fn sections(shown: &Shown) -> Markup {
-    let figures: Vec<Vec<String>> = shown.figures.iter().map(|row| row.to_vec()).collect();
+    let figures: Vec<Vec<String>> = shown
+        .figures
+        .iter()
+        .map(|figure| figure.cells().to_vec())
+        .collect();
     let change = |change: &Change| {
         let values = [change.before, change.after].map(|value| format!("{value:.3}"));
         [change.key.clone()].into_iter().chain(values).collect()
@@ -50,8 +55,9 @@ fn sections(shown: &Shown) -> Markup {
         h2 { "Changed values" }
         (page::table(&["value", "before", "after"], &changes))
         h2 { "Figures of the search" }
-        p { "On the plant and its neighbours, with typical effects where the model has none." }
-        (page::table(&["figure", "limit", "before", "after"], &figures))
+        p { "On the plant and its neighbours, with typical effects where the model has none. "
+            @if let Some(said) = figures::sentence(shown.figures) { strong { (said) } } }
+        (page::table(&Figure::HEADINGS, &figures))
     }
 }
 

@@ -25,6 +25,17 @@ const FILES: &[(&str, &str, &str)] = &[
     ("main.js", SCRIPT, include_str!("assets/main.js")),
     ("server.js", SCRIPT, include_str!("assets/server.js")),
     ("fault.js", SCRIPT, include_str!("assets/fault.js")),
+    (
+        "first_model.js",
+        SCRIPT,
+        include_str!("assets/first_model.js"),
+    ),
+    (
+        "controller.js",
+        SCRIPT,
+        include_str!("assets/controller.js"),
+    ),
+    ("way.js", SCRIPT, include_str!("assets/way.js")),
     ("files.js", SCRIPT, include_str!("assets/files.js")),
     ("second.js", SCRIPT, include_str!("assets/second.js")),
     ("overlay.js", SCRIPT, include_str!("assets/overlay.js")),
@@ -37,6 +48,11 @@ const FILES: &[(&str, &str, &str)] = &[
     ("signals.js", SCRIPT, include_str!("assets/signals.js")),
     ("tabs.js", SCRIPT, include_str!("assets/tabs.js")),
     ("trial.js", SCRIPT, include_str!("assets/trial.js")),
+    (
+        "known_points.js",
+        SCRIPT,
+        include_str!("assets/known_points.js"),
+    ),
     ("mapping.js", SCRIPT, include_str!("assets/mapping.js")),
     ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
     (

@@ -1,4 +1,5 @@
 //! Long computations: each runs in its own thread and reports its progress.
+use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,7 +12,7 @@ use super::routes::{Refusal, lock};
 use super::session::Job;
 use super::sessions::Shared;
 use super::tasks::{Outcome, Ready, Task};
-use crate::search_args::{BUDGET_S, limit};
+use crate::search_args::limit;
 
 /// Panic payload that unwinds a cancelled computation.
 struct Cancelled;
@@ -36,9 +37,17 @@ impl Reporter {
         self.tell(json!({ "kind": "candidate", "candidate": candidate, "fraction": fraction }));
     }
 
-    /// The limit of a search that keeps its best result: the usual time, and until it is cancelled.
-    pub fn limit(&self) -> Limit<'_> {
-        limit(BUDGET_S, Some(&*self.cancelled))
+    /// The limit of a search that keeps its best result: a time, s, and until it is cancelled.
+    pub fn limit(&self, budget_s: f64) -> Limit<'_> {
+        limit(budget_s, Some(&*self.cancelled))
+    }
+
+    /// Whether a search goes on: until it is cancelled.
+    pub fn goes_on(&self) -> ControlFlow<()> {
+        match self.cancelled.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     }
 
     fn tell(&self, message: Value) {
@@ -90,6 +99,7 @@ fn finish(session: &Shared, reporter: &Reporter, outcome: std::thread::Result<Ou
     }
     open.job = None;
     let message = match outcome {
+        Ok(Outcome::Failed(text)) => json!({ "kind": "failed", "text": text }),
         Ok(outcome) => {
             outcome.apply(&mut open);
             json!({ "kind": "done" })

@@ -3,18 +3,21 @@
 //! The browser draws; every number is computed here. Each tab has its own `session::Session`. Long computations run as
 //! jobs, and the tab follows their progress through Server-Sent Events.
 mod assets;
+mod first;
 mod guard;
 mod jobs;
 mod live;
 mod own_term;
 mod parameters;
 mod routes;
+mod saving;
 mod second;
 mod server;
 mod session;
 mod sessions;
 mod source;
 mod tasks;
+mod tuned;
 mod upload;
 mod views;
 

@@ -3,7 +3,7 @@
 use std::sync::{Arc, MutexGuard, PoisonError};
 
 use axum::extract::{Path, Query, State};
-use axum::http::{StatusCode, header};
+use axum::http::StatusCode;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
@@ -21,7 +21,7 @@ use super::session::{Session, Step};
 use super::sessions::{Sessions, Shared};
 use super::source::Subject;
 use super::tasks::Task;
-use super::{assets, jobs, live, own_term, second, upload, views};
+use super::{assets, first, jobs, live, own_term, saving, second, upload, views};
 use crate::comparison::{Grouping, worst_in_part};
 use crate::error::Error;
 
@@ -48,8 +48,9 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/cancel", post(cancel))
         .route("/{token}/api/go", post(go))
         .route("/{token}/api/events", get(events))
-        .route("/{token}/api/model", get(model))
+        .merge(first::routes())
         .merge(live::routes())
+        .merge(saving::routes())
         .merge(second::routes())
         .merge(upload::routes())
 }
@@ -320,19 +321,6 @@ async fn events(
     let known = messages.filter_map(Result::ok);
     let events = known.map(|message| Event::default().json_data(message));
     Ok(Sse::new(events).keep_alive(KeepAlive::default()))
-}
-
-async fn model(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
-    let session = find(&sessions, &of.session)?;
-    let text = views::model_file(&lock(&session));
-    let headers = [
-        (header::CONTENT_TYPE, "application/toml; charset=utf-8"),
-        (
-            header::CONTENT_DISPOSITION,
-            "attachment; filename=\"model.toml\"",
-        ),
-    ];
-    Ok((headers, text).into_response())
 }
 
 /// The session of a tab.

@@ -1,6 +1,5 @@
 //! A second model on the campaign of a session, compared with the present one: an earlier step, or a model file.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
@@ -9,11 +8,11 @@ use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
-use hitch_input::source_file::SourceFile;
 use hitch_plant::Model;
 use serde::Deserialize;
 use serde_json::json;
 
+use super::first::{LARGEST_MODEL, parsed};
 use super::jobs;
 use super::routes::{Answer, Known, Of, OfCell, Refusal, blocking, find, lock};
 use super::session::Session;
@@ -21,10 +20,6 @@ use super::sessions::Sessions;
 use super::source::Subject;
 use super::tasks::Task;
 use crate::comparison::{Evaluated, largest_change_in_part};
-use crate::error::Error;
-
-/// Maximum size of a model file, bytes.
-const LARGEST_MODEL: usize = 1 << 20;
 
 /// A second model, evaluated on the campaign of the session.
 #[derive(Debug, Clone)]
@@ -113,12 +108,6 @@ async fn file(State(sessions): Known, Query(of): Query<OfFile>, body: Bytes) -> 
     jobs::start(&session, Task::Second { title, model })?;
     let title = lock(&session).job.as_ref().map(|job| job.title.clone());
     Ok(Json(json!({ "title": title })))
-}
-
-/// The model of a file.
-fn parsed(name: &str, bytes: &[u8]) -> Result<Model, Error> {
-    let path = Path::new(name);
-    Ok(hitch_model_file::parse(&SourceFile::of(path, bytes)?)?)
 }
 
 async fn swap(State(sessions): Known, Json(of): Json<Of>) -> Answer {

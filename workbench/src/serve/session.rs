@@ -15,9 +15,10 @@ use tokio::sync::broadcast;
 use super::live::TabLoop;
 use super::second::Second;
 use super::source::Subject;
+use super::tuned::TunedFor;
 use super::upload::Upload;
 use crate::comparison::Evaluated;
-use crate::explanation;
+use crate::explanation::{self, rebuilt};
 
 /// Capacity of the message queue; a tab that is further behind requests the state again.
 const KEPT_MESSAGES: usize = 256;
@@ -75,6 +76,14 @@ pub struct Explained {
     pub shown: explanation::Explanation,
 }
 
+/// A first model that was exchanged for another one, with the steps from it.
+#[derive(Debug)]
+struct Earlier {
+    subject: Arc<Subject>,
+    steps: Vec<Step>,
+    at: usize,
+}
+
 /// A running computation.
 #[derive(Debug, Clone)]
 pub struct Job {
@@ -96,6 +105,12 @@ pub struct Session {
     pub ranking: Option<Arc<Ranking>>,
     /// The latest explanation.
     pub explained: Option<Arc<Explained>>,
+    /// The first model before the present one.
+    earlier: Option<Earlier>,
+    /// The latest tuned calibration.
+    pub tuned: Option<Arc<TunedFor>>,
+    /// The model that was saved last.
+    pub saved: Option<Arc<Evaluated>>,
     /// The running computation.
     pub job: Option<Job>,
     /// The closed loop.
@@ -117,6 +132,9 @@ impl Session {
             at: 0,
             ranking: None,
             explained: None,
+            earlier: None,
+            tuned: None,
+            saved: None,
             job: None,
             tab_loop: None,
             second: None,
@@ -131,6 +149,65 @@ impl Session {
         self.steps = vec![first(&subject)];
         self.at = 0;
         self.subject = subject;
+        self.forget();
+        self.earlier = None;
+    }
+
+    /// Takes another first model on the same campaign; [`Session::back`] returns to the present one with its steps.
+    pub fn exchange(&mut self, subject: Arc<Subject>) {
+        self.give_up();
+        self.earlier = Some(Earlier {
+            steps: std::mem::replace(&mut self.steps, vec![first(&subject)]),
+            at: std::mem::take(&mut self.at),
+            subject: std::mem::replace(&mut self.subject, subject),
+        });
+        self.forget();
+    }
+
+    /// Returns to the first model before the present one; false if there is none. Once more, it returns to the present one.
+    pub fn back(&mut self) -> bool {
+        let Some(earlier) = &mut self.earlier else {
+            return false;
+        };
+        std::mem::swap(&mut self.subject, &mut earlier.subject);
+        std::mem::swap(&mut self.steps, &mut earlier.steps);
+        std::mem::swap(&mut self.at, &mut earlier.at);
+        self.forget();
+        true
+    }
+
+    /// Name of the first model before the present one.
+    pub fn earlier(&self) -> Option<&str> {
+        let earlier = self.earlier.as_ref();
+        earlier.map(|earlier| earlier.subject.model.name.as_str())
+    }
+
+    /// The present model, as it is saved.
+    pub fn rebuilt(&self) -> Model {
+        let name = format!(
+            "{}-{}",
+            self.subject.model.name,
+            self.subject.experiment().name
+        );
+        rebuilt(&self.model(), &self.fit().estimate, name)
+    }
+
+    /// The explanation, if it starts from the present model.
+    pub fn present_explanation(&self) -> Option<&Arc<Explained>> {
+        let present = &self.present().evaluated;
+        let explained = self.explained.as_ref();
+        explained.filter(|explained| Arc::ptr_eq(&explained.of, present))
+    }
+
+    /// The tuned calibration, if it is for the present model.
+    pub fn present_tuned(&self) -> Option<&Arc<TunedFor>> {
+        let present = &self.present().evaluated;
+        let tuned = self.tuned.as_ref();
+        tuned.filter(|tuned| Arc::ptr_eq(&tuned.of, present))
+    }
+
+    /// Drops what belongs to another first model.
+    fn forget(&mut self) {
         (self.ranking, self.explained) = (None, None);
         (self.tab_loop, self.second) = (None, None);
     }
@@ -193,7 +270,7 @@ impl Session {
         match &mut self.job {
             Some(job) if job.keeps_best && !job.cancelled.load(Ordering::Relaxed) => {
                 job.cancelled.store(true, Ordering::Relaxed);
-                job.title = "Ending with the best explanation so far".to_owned();
+                job.title = "Ending with the best result so far".to_owned();
             }
             _ => self.give_up(),
         }
@@ -233,6 +310,24 @@ mod tests {
             title: title.to_owned(),
             ..session.present().clone()
         }
+    }
+
+    #[test]
+    fn an_exchanged_first_model_comes_back_with_its_steps() {
+        let source = Source {
+            campaign: None,
+            model: hitch_model_file::nominal(),
+            baseline: None,
+        };
+        let mut session = Session::new(Arc::new(source.read().unwrap()));
+        assert!(!session.back() && session.earlier().is_none());
+        session.push(step(&session, "one"));
+        let dynamic = session.subject().exchanged(hitch_model_file::dynamic());
+        session.exchange(Arc::new(dynamic.unwrap()));
+        assert_eq!((session.at(), session.earlier()), (0, Some("nominal")));
+        assert!(session.back());
+        assert_eq!((session.at(), session.present().title.as_str()), (1, "one"));
+        assert_eq!(session.earlier(), Some("dynamic"));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The campaign and the initial model of the page.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -7,6 +8,7 @@ use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
 use hitch_plant::Model;
 
+use crate::base_fit::ShownBaseFit;
 use crate::comparison::Evaluated;
 use crate::demonstration;
 use crate::error::Error;
@@ -23,15 +25,27 @@ pub struct Source {
     pub baseline: Option<PathBuf>,
 }
 
+/// Where a campaign is read from.
+pub trait Origin: fmt::Debug + Send + Sync {
+    /// Reads the campaign, and evaluates a first model on it.
+    ///
+    /// # Errors
+    /// If the campaign is invalid.
+    fn subject(self: Arc<Self>, model: Model) -> Result<Subject, Error>;
+}
+
 /// A campaign, and the model evaluated on it.
 #[derive(Debug)]
 pub struct Subject {
+    origin: Arc<dyn Origin>,
     /// Description of the campaign; empty if it has none.
     pub description: String,
     /// The initial model.
     pub model: Model,
     /// The evaluation of the initial model.
     pub start: Arc<Evaluated>,
+    /// The fit of the initial model's constants; `None` if they are as declared.
+    pub fitted: Option<ShownBaseFit>,
 }
 
 impl Source {
@@ -40,15 +54,21 @@ impl Source {
     /// # Errors
     /// If the campaign or the baseline is invalid.
     pub fn read(&self) -> Result<Subject, Error> {
+        Arc::new(self.clone()).subject(self.model.clone())
+    }
+}
+
+impl Origin for Source {
+    fn subject(self: Arc<Self>, model: Model) -> Result<Subject, Error> {
         let campaign = match &self.campaign {
-            Some(folder) => Campaign::load_with(folder, self.model.linkage())?,
+            Some(folder) => Campaign::load_with(folder, model.linkage())?,
             None => demonstration::campaign()?,
         };
         let Some(folder) = &self.baseline else {
-            return Ok(Subject::new(&campaign, self.model.clone()));
+            return Ok(Subject::new(self, &campaign, model));
         };
-        let baseline = Campaign::load_with(folder, self.model.linkage())?;
-        let since = Since::new(&baseline, self.model.clone());
+        let baseline = Campaign::load_with(folder, model.linkage())?;
+        let since = Since::new(&baseline, model);
         let experiment = since.subtracted_from(&campaign);
         let beside = format!(
             "Measured values are less what the model leaves on {} in like states",
@@ -61,18 +81,30 @@ impl Source {
             },
             start: Arc::new(Evaluated::prepared(experiment, &since.model)),
             model: since.model,
+            fitted: None,
+            origin: self,
         })
     }
 }
 
 impl Subject {
     /// Evaluates a model on a campaign.
-    pub fn new(campaign: &Campaign, model: Model) -> Self {
+    pub fn new(origin: Arc<dyn Origin>, campaign: &Campaign, model: Model) -> Self {
         Self {
+            origin,
+            fitted: None,
             description: campaign.description.clone(),
             start: Arc::new(Evaluated::new(campaign, &model)),
             model,
         }
+    }
+
+    /// The same campaign with another first model: noise, and angles that come from a travel, depend on it.
+    ///
+    /// # Errors
+    /// If the campaign can no longer be read.
+    pub fn exchanged(&self, model: Model) -> Result<Self, Error> {
+        Arc::clone(&self.origin).subject(model)
     }
 
     /// The prepared campaign.

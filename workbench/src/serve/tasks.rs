@@ -1,36 +1,33 @@
 //! Computations of a session: rank effects, fit a model, explain the campaign.
 
+mod run;
+
+use std::ops::RangeInclusive;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
-use hitch_identification::data::experiment::Experiment;
-use hitch_identification::data::problem::Problem;
+use hitch_identification::constants::tolerances::Tolerances;
 use hitch_identification::estimate::Estimate;
-use hitch_identification::estimation::fit::{Fit, evaluate, fit_loads, refine, short_fit};
-use hitch_identification::explanation::diagnosis::diagnose_each;
-use hitch_identification::residuals::whitening::Weights;
-use hitch_identification::search::single_effects::try_effects;
-use hitch_identification::search::subset::Options;
-use hitch_identification::selection::hold_out::held_out;
 use hitch_identification::suggestion::Suggestion;
-use hitch_plant::{AddedEffect, Effect, Model, full_name};
+use hitch_plant::{Effect, Model, full_name};
 use serde::Deserialize;
+use serde_json::json;
 
-use super::jobs::Reporter;
 use super::own_term::TermForm;
-use super::parameters::{held, keep_fixed, moved};
+use super::parameters::{held, moved};
 use super::routes::Refusal;
 use super::second::Second;
 use super::session::{Explained, Ranking, Session, Step};
 use super::source::Subject;
-use super::views;
-use crate::comparison::Evaluated;
+use super::tuned::TunedFor;
 use crate::effect_arg::find;
-use crate::explanation;
+use crate::error::Error;
+use crate::search_args::BUDGET_S;
 
-/// Maximum number of rounds of a fit before the final one, and the relative decrease of the cost that continues it.
-const ROUNDS: usize = 6;
-const WORTHWHILE: f64 = 1e-3;
+/// Times of an explanation, s.
+const BUDGETS_S: RangeInclusive<f64> = 1.0..=86_400.0;
+
+/// Numbers of candidates of a tuned calibration.
+const TRIALS: RangeInclusive<usize> = 10..=100_000;
 
 /// A computation as requested by a tab.
 #[derive(Debug, Clone, Deserialize)]
@@ -74,7 +71,17 @@ pub enum Task {
     /// Fit all effects from their present values.
     Fit,
     /// Find all missing effects.
-    Explain,
+    Explain(Search),
+    /// Fit the constants of the present model, which becomes the first model.
+    Constants {
+        /// Constants that are exact.
+        hold: Vec<String>,
+    },
+    /// Tune the calibration of the present model.
+    Tune {
+        /// Number of candidates.
+        trials: usize,
+    },
     /// Accept steps of the explanation.
     Adopt {
         /// Indices of the accepted steps.
@@ -92,19 +99,50 @@ pub enum Task {
     },
 }
 
+/// How an explanation is searched.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(default)]
+pub struct Search {
+    /// Time after which it ends with its best so far, s.
+    budget_s: f64,
+    /// Whether the constants come from data sheets and are fitted together with the effects.
+    data_sheet: bool,
+    /// Constants that are exact.
+    hold: Vec<String>,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self {
+            budget_s: BUDGET_S,
+            data_sheet: false,
+            hold: Vec::new(),
+        }
+    }
+}
+
 /// A task with its inputs.
 pub struct Ready {
     subject: Arc<Subject>,
     model: Model,
+    /// The present model with its effects.
+    rebuilt: Model,
     present: Step,
     ranking: Option<Arc<Ranking>>,
     what: What,
 }
 
+/// The tolerances of a fit that holds some constants.
+fn held_exact(hold: &[String], model: &Model) -> Result<Tolerances, Refusal> {
+    Tolerances::holding(hold, model.constants()).map_err(|what| Error::Usage(what).into())
+}
+
 /// A checked task.
 enum What {
     Rank,
-    Explain,
+    Explain(Search, Tolerances),
+    Constants(Tolerances),
+    Tune(usize),
     Add(&'static dyn Effect),
     Remove(usize),
     Set(Estimate, String),
@@ -125,6 +163,12 @@ pub enum Outcome {
     Steps(Vec<Step>),
     /// A second model.
     Second(Arc<Second>),
+    /// Another first model.
+    First(Arc<Subject>),
+    /// A tuned calibration.
+    Tuned(Arc<TunedFor>),
+    /// Nothing, for this reason.
+    Failed(String),
 }
 
 impl Outcome {
@@ -135,6 +179,9 @@ impl Outcome {
             Self::Explained(explained) => session.explained = Some(explained),
             Self::Steps(steps) => steps.into_iter().for_each(|step| session.push(step)),
             Self::Second(second) => session.second = Some(second),
+            Self::First(subject) => session.exchange(subject),
+            Self::Tuned(tuned) => session.tuned = Some(tuned),
+            Self::Failed(_) => {}
         }
     }
 }
@@ -154,7 +201,20 @@ impl Ready {
         let mut present = session.present().clone();
         let what = match task {
             Task::Rank => What::Rank,
-            Task::Explain => What::Explain,
+            Task::Explain(search) => {
+                check_search(&search)?;
+                let own = held_exact(&search.hold, &session.subject().model)?;
+                What::Explain(search, own)
+            }
+            Task::Constants { hold } => {
+                What::Constants(held_exact(&hold, &session.subject().model)?)
+            }
+            Task::Tune { trials } if TRIALS.contains(&trials) => What::Tune(trials),
+            Task::Tune { .. } => {
+                let (low, high) = (TRIALS.start(), TRIALS.end());
+                let what = format!("the number of candidates is {low} to {high}");
+                return Err(Refusal::wrong(json!({ "what": what })));
+            }
             Task::Fit => What::Fit,
             Task::Add { effect } => What::Add(new_effect(session, &effect)?),
             Task::Term { term } => {
@@ -195,6 +255,7 @@ impl Ready {
         Ok(Self {
             subject: Arc::clone(session.subject()),
             model: session.model().with_terms(present.terms.clone()),
+            rebuilt: session.rebuilt(),
             present,
             ranking: session.present_ranking().cloned(),
             what,
@@ -205,7 +266,9 @@ impl Ready {
     pub fn title(&self) -> String {
         match &self.what {
             What::Rank => "Evaluating every effect".to_owned(),
-            What::Explain => "Explaining".to_owned(),
+            What::Explain(..) => "Explaining".to_owned(),
+            What::Constants(_) => "Fitting the constants".to_owned(),
+            What::Tune(_) => "Tuning the calibration".to_owned(),
             What::Add(effect) => format!("Adding {}", full_name(*effect)),
             What::Remove(effect) => format!("Taking {} away", self.name(*effect)),
             What::Set(_, _) => "Evaluating all runs".to_owned(),
@@ -219,233 +282,25 @@ impl Ready {
 
     /// Whether it ends with its best result so far when it is cancelled.
     pub fn keeps_best(&self) -> bool {
-        matches!(self.what, What::Explain)
+        matches!(self.what, What::Explain(..) | What::Tune(_))
     }
+}
 
-    /// Runs the task.
-    pub fn run(&self, reporter: &Reporter) -> Outcome {
-        let before = &self.present.evaluated.fit;
-        match &self.what {
-            What::Rank => Outcome::Ranking(Arc::new(self.rank(reporter))),
-            What::Explain => Outcome::Explained(Arc::new(self.explain(reporter))),
-            What::Add(effect) => {
-                let title = format!("Added {}", full_name(*effect));
-                Outcome::Steps(vec![self.fitted(
-                    title,
-                    self.with(*effect, reporter),
-                    reporter,
-                )])
-            }
-            What::Remove(effect) => {
-                let title = format!("Took {} away", self.name(*effect));
-                let mut start = before.estimate.clone();
-                start.effects.remove(*effect);
-                Outcome::Steps(vec![self.fitted(title, start, reporter)])
-            }
-            What::Set(estimate, title) => {
-                reporter.progress("evaluating all runs", None, None);
-                let weights = Weights::new(Problem::new(self.experiment(), self.model()), estimate);
-                let estimate = estimate.clone();
-                let loaded = fit_loads(
-                    Problem::new(self.experiment(), self.model()),
-                    &weights,
-                    estimate,
-                );
-                let fit = evaluate(Problem::new(self.experiment(), self.model()), loaded);
-                Outcome::Steps(vec![self.step(title.clone(), fit, None)])
-            }
-            What::Fix(estimate, title) => {
-                let fit = Fit {
-                    estimate: estimate.clone(),
-                    ..before.clone()
-                };
-                Outcome::Steps(vec![self.step(title.clone(), fit, self.present.held_out)])
-            }
-            What::Fit => {
-                let start = before.estimate.clone();
-                Outcome::Steps(vec![self.fitted("Fitted".to_owned(), start, reporter)])
-            }
-            What::Suggested(found) => {
-                let title = format!("Accepted the explanation with {}", found.term.id());
-                let start = found.fit.estimate.clone();
-                Outcome::Steps(vec![self.fitted(title, start, reporter)])
-            }
-            What::Second(title, model) => {
-                reporter.progress("fitting the clocks and loads", None, None);
-                let (title, model) = (title.clone(), (**model).clone());
-                Outcome::Second(Arc::new(Second::evaluate(&self.subject, title, model)))
-            }
-            What::Adopt(explained, steps) => {
-                Outcome::Steps(self.adopted(explained, steps, reporter))
-            }
+/// Whether the time of a search is one.
+fn check_search(search: &Search) -> Result<(), Refusal> {
+    match BUDGETS_S.contains(&search.budget_s) {
+        true => Ok(()),
+        false => {
+            let (low, high) = (BUDGETS_S.start(), BUDGETS_S.end());
+            let what = format!("the time limit is {low} to {high} s");
+            Err(Refusal::wrong(json!({ "what": what })))
         }
-    }
-
-    fn rank(&self, reporter: &Reporter) -> Ranking {
-        reporter.progress("fitting the clocks and loads", None, None);
-        let start = self.present.evaluated.fit.estimate.clone();
-        let base = refine(
-            Problem::new(self.experiment(), self.model()),
-            start.with_adopted(),
-        );
-        reporter.progress("simulating every effect at a few sizes", None, None);
-        let done = AtomicUsize::new(0);
-        let diagnosis = diagnose_each(
-            Problem::new(self.experiment(), self.model()),
-            base.clone(),
-            &|_| {},
-            &|candidate, all| {
-                let share = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64;
-                reporter.candidate(&views::tried(&base, candidate), share);
-            },
-        );
-        reporter.progress("comparing the best candidates", None, None);
-        let shown = explanation::Diagnosis::new(self.experiment(), self.model(), &diagnosis);
-        Ranking {
-            of: Arc::clone(&self.present.evaluated),
-            diagnosis,
-            shown,
-        }
-    }
-
-    fn explain(&self, reporter: &Reporter) -> Explained {
-        let estimate = &self.present.evaluated.fit.estimate;
-        let model = estimate.applied_to(self.model());
-        reporter.progress("fitting the clocks and loads", None, None);
-        let options = Options {
-            limit: reporter.limit(),
-            ..Options::default()
-        };
-        let explained = explanation::Explained::new(self.experiment(), &model, options, &|what| {
-            reporter.progress(&format!("trying {what}"), None, None);
-        });
-        let explanation::Explained {
-            explanation,
-            suggestion,
-            shown,
-        } = explained;
-        Explained {
-            suggestion,
-            of: Arc::clone(&self.present.evaluated),
-            explanation,
-            shown,
-        }
-    }
-
-    /// Initial estimate for the fit with one more effect.
-    fn with(&self, effect: &'static dyn Effect, reporter: &Reporter) -> Estimate {
-        reporter.progress(
-            "estimating its size",
-            None,
-            Some(self.present.evaluated.fit.error()),
-        );
-        let ranking = self.ranking.as_ref();
-        let ranked = ranking.and_then(|ranking| ranking.candidate(&full_name(effect)));
-        if let Some(candidate) = ranked {
-            return candidate.fit.estimate.clone();
-        }
-        let (experiment, model) = (self.experiment(), self.model());
-        let base = &self.present.evaluated.fit;
-        let tried = try_effects(Problem::new(experiment, model), base, &[effect], &|_| {
-            reporter.progress("estimating its size", None, None);
-        });
-        let tried = tried.into_iter().next();
-        tried.map_or_else(
-            || {
-                let mut start = base.estimate.clone();
-                start.effects.push(AddedEffect::typical(effect));
-                start
-            },
-            |candidate| candidate.fit.estimate,
-        )
-    }
-
-    /// Fits all effects from an initial estimate; reports the error after each round.
-    fn fitted(&self, title: String, mut estimate: Estimate, reporter: &Reporter) -> Step {
-        let (experiment, model) = (self.experiment(), self.model());
-        estimate.adopted.clear();
-        keep_fixed(&self.present.evaluated.fit.estimate, &mut estimate);
-        let whole = (ROUNDS + 3) as f64;
-        let told = |round: usize, text: &str, fit: &Fit| {
-            reporter.progress(text, Some(round as f64 / whole), Some(fit.error()));
-        };
-        let mut fit = evaluate(Problem::new(experiment, model), estimate);
-        told(0, "start", &fit);
-        for round in 1..=ROUNDS {
-            let descent = short_fit(
-                Problem::new(experiment, model),
-                &fit.weights,
-                fit.estimate,
-                false,
-            );
-            fit = evaluate(Problem::new(experiment, model), descent.estimate);
-            told(round, &format!("fitting, round {round}"), &fit);
-            if descent.last_reduction <= WORTHWHILE * descent.cost {
-                break;
-            }
-        }
-        let fit = refine(Problem::new(experiment, model), fit.estimate);
-        told(ROUNDS + 1, "evaluating held-out runs", &fit);
-        let error = held_out(Problem::new(experiment, model), &fit).error;
-        reporter.progress("done", Some(1.0), None);
-        self.step(title, fit, Some(error))
-    }
-
-    /// The accepted steps of an explanation: step by step if all are accepted, else fitted together.
-    fn adopted(&self, explained: &Explained, accepted: &[usize], reporter: &Reporter) -> Vec<Step> {
-        let found = &explained.explanation;
-        let fixed = &self.present.evaluated.fit.estimate.fixed;
-        if fixed.is_empty() && (0..found.steps.len()).all(|step| accepted.contains(&step)) {
-            let constants = found.corrected.iter().map(|corrected| {
-                let title = "Fitted the constants".to_owned();
-                self.step(title, corrected.fit.clone(), None)
-            });
-            let steps = found.steps.iter().map(|step| {
-                let title = format!("Added {}", full_name(step.effect));
-                self.step(title, step.fit.clone(), Some(step.held_out_after.error))
-            });
-            return constants.chain(steps).collect();
-        }
-        let mut start = found.after.estimate.clone();
-        for (index, step) in found.steps.iter().enumerate() {
-            let mut effects = start.effects.iter();
-            let place = effects.position(|added| added.effect.id() == step.effect.id());
-            if let (false, Some(place)) = (accepted.contains(&index), place) {
-                start = start.without(place);
-            }
-        }
-        vec![self.fitted("Accepted steps".to_owned(), start, reporter)]
-    }
-
-    fn step(&self, title: String, fit: Fit, held_out: Option<f64>) -> Step {
-        let experiment = Arc::clone(&self.subject.start.experiment);
-        Step {
-            title,
-            evaluated: Arc::new(Evaluated::fitted(experiment, fit, &self.subject.model)),
-            held_out: held_out.filter(|error| error.is_finite()),
-            terms: self.present.terms.clone(),
-        }
-    }
-
-    fn name(&self, effect: usize) -> String {
-        let effects = &self.present.evaluated.fit.estimate.effects;
-        full_name(effects[effect].effect)
-    }
-
-    fn experiment(&self) -> &Experiment {
-        self.subject.experiment()
-    }
-
-    fn model(&self) -> &Model {
-        &self.model
     }
 }
 
 /// The explanation, if it starts from the present model.
 fn present_explanation(session: &Session) -> Result<Arc<Explained>, Refusal> {
-    let present = &session.present().evaluated;
-    let explained = session.explained.as_ref();
-    let explained = explained.filter(|known| Arc::ptr_eq(&known.of, present));
+    let explained = session.present_explanation();
     let stale = || Refusal::conflict("the model has changed; run the explanation again");
     explained.cloned().ok_or_else(stale)
 }

@@ -1,6 +1,7 @@
 //! JSON views of a session.
 mod effects;
 mod second;
+mod way;
 
 use std::sync::Arc;
 
@@ -16,7 +17,6 @@ use super::session::{Ranking, Session, Step};
 use super::source::Subject;
 use crate::comparison::{Comparison, Evaluated, Grouping};
 use crate::error::Error;
-use crate::explanation::rebuilt;
 use crate::report::run_views::conditions;
 use crate::words;
 
@@ -46,6 +46,10 @@ pub fn state(session: &Session) -> Value {
         "campaign": subject.experiment().name,
         "description": subject.description,
         "model": words::named(&subject.model),
+        "earlier_model": session.earlier(),
+        "way": way::steps(session),
+        "constants": way::constants(session),
+        "tuned": way::tuned(session),
         "words": words::ALL,
         "runs": runs(evaluated),
         "channels": channels(evaluated),
@@ -198,16 +202,13 @@ pub fn signature(
 
 /// The present model as a file, with the steps that led to it.
 pub fn model_file(session: &Session) -> String {
-    let subject = session.subject();
     let mut text = String::from("# Made with hitch serve:\n");
     for (number, step) in session.steps()[..=session.at()].iter().enumerate() {
         let error = step.evaluated.fit.error();
         let title = step.title.replace(char::is_control, " ");
         text += &format!("# {number}. {title}: error {error:.2} sigma\n");
     }
-    let name = format!("{}-{}", subject.model.name, subject.experiment().name);
-    let estimate = &session.fit().estimate;
-    text + &hitch_model_file::to_toml(&rebuilt(&session.model(), estimate, name))
+    text + &hitch_model_file::to_toml(&session.rebuilt())
 }
 
 /// Measured and simulated channels of a run; `None` if there is no such run.

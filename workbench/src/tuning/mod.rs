@@ -5,7 +5,10 @@
 //! the model has none: gains that are tuned without hysteresis do not suit a real valve.
 
 mod cost;
+pub mod figures;
 mod knobs;
+
+use std::ops::ControlFlow;
 
 use cmaes::{CMAESOptions, DVector};
 use hitch_effects::find;
@@ -14,11 +17,11 @@ use hitch_quantities::{Calibration, ValidCalibration};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use figures::Figure;
 use knobs::{Least, tuned_by, with_values, without};
 
 use crate::closed_loop::{
-    Course, Move, MoveResult, Press, PressResult, PressSummary, Summary, courses, figures,
-    run_presses,
+    self, Course, Move, MoveResult, Press, PressResult, PressSummary, Summary, courses, run_presses,
 };
 
 pub use cost::{cost, press_cost};
@@ -64,6 +67,24 @@ pub struct Judged {
     pub presses: Option<PressSummary>,
     /// Cost, the objective of the search.
     pub cost: f64,
+}
+
+impl Judged {
+    /// The figures of this initial calibration beside those of a tuned one.
+    #[must_use]
+    pub fn compared(&self, after: &Self) -> Vec<Figure> {
+        figures::compared(
+            self.summary
+                .as_ref()
+                .zip(after.summary.as_ref())
+                .map(Into::into),
+            self.presses
+                .as_ref()
+                .zip(after.presses.as_ref())
+                .map(Into::into),
+            [self.cost, after.cost],
+        )
+    }
 }
 
 /// One value that was searched.
@@ -112,7 +133,7 @@ impl Trial {
         let results: Vec<MoveResult> = self
             .plants
             .iter()
-            .flat_map(|(plant, courses)| figures(plant, calibration, courses, AFTER_S))
+            .flat_map(|(plant, courses)| closed_loop::figures(plant, calibration, courses, AFTER_S))
             .collect();
         let pressed: Vec<PressResult> = self
             .plants
@@ -130,19 +151,20 @@ impl Trial {
     }
 
     /// Searches from `base` with at most `trials` candidates. Values named in `fixed` (as in `position.creep_speed`) are
-    /// not changed. `tell` is called after each candidate with their number so far and the best cost.
+    /// not changed. `tell` is called after each candidate with their number so far and the best cost; the search ends with its
+    /// best so far when it answers `Break`.
     #[must_use]
     pub fn search(
         &self,
         base: &Calibration,
         fixed: &[String],
         trials: usize,
-        tell: impl Fn(usize, f64) + Sync,
+        tell: impl Fn(usize, f64) -> ControlFlow<()> + Sync,
     ) -> Option<Judged> {
         let knobs = without(&self.knobs, fixed);
-        let state = std::sync::Mutex::new((0, None::<Judged>));
+        let state = std::sync::Mutex::new((0, None::<Judged>, false));
         // The method always completes a generation.
-        let is_over = || state.lock().is_ok_and(|state| state.0 >= trials);
+        let is_over = || state.lock().is_ok_and(|state| state.0 >= trials || state.2);
         let objective = |point: &DVector<f64>| {
             if is_over() {
                 return f64::MAX;
@@ -156,7 +178,8 @@ impl Trial {
                 if state.1.as_ref().is_none_or(|best| cost < best.cost) {
                     state.1 = judged;
                 }
-                tell(state.0, state.1.as_ref().map_or(f64::MAX, |best| best.cost));
+                let best = state.1.as_ref().map_or(f64::MAX, |best| best.cost);
+                state.2 = tell(state.0, best).is_break();
             }
             cost
         };
@@ -221,7 +244,10 @@ mod tests {
         };
         for trials in [1, 10, 31] {
             let tried = std::sync::Mutex::new(Vec::new());
-            let tell = |count, _| tried.lock().expect("not poisoned").push(count);
+            let tell = |count, _| {
+                tried.lock().expect("not poisoned").push(count);
+                ControlFlow::Continue(())
+            };
             let found = trial.search(&Calibration::nominal(), &[], trials, tell);
             assert!(found.is_none(), "nothing is driven");
             let tried = tried.into_inner().expect("not poisoned");

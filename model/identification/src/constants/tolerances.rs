@@ -15,9 +15,28 @@ use crate::constants::parameter::{Parameter, parameters};
 pub struct Tolerances(BTreeMap<String, f64>);
 
 impl Tolerances {
+    /// The usual tolerances, but for constants that are exact.
+    ///
+    /// # Errors
+    /// A fit does not move one of them.
+    pub fn holding(exact: &[String], constants: &Constants) -> Result<Self, String> {
+        let mut own = Self::default();
+        for name in exact {
+            own.hold(name, constants)?;
+        }
+        Ok(own)
+    }
+
     /// Makes a constant exact.
-    pub fn hold(&mut self, name: &str) {
-        self.0.insert(name.to_owned(), 0.0);
+    ///
+    /// # Errors
+    /// A fit does not move it.
+    pub fn hold(&mut self, name: &str, constants: &Constants) -> Result<(), String> {
+        if !names(constants).iter().any(|known| known == name) {
+            return Err(unknown(name, constants));
+        }
+        self.set(name, 0.0);
+        Ok(())
     }
 
     /// Gives a constant a standard deviation, as in [`Tolerances`].
@@ -101,23 +120,18 @@ pub enum Own {
     Share(f64),
 }
 
-/// Whether a name is that of a constant that is fitted.
-///
-/// # Errors
-/// If it is not: with all that are.
-pub fn check_name(name: &str, constants: &Constants) -> Result<(), String> {
-    let all = parameters(constants);
-    match all.iter().any(|one| one.name().as_deref() == Some(name)) {
-        true => Ok(()),
-        false => Err(unknown(name, constants)),
-    }
-}
-
-fn unknown(name: &str, constants: &Constants) -> String {
+/// Names of the constants that a fit moves, each once: `table.key`.
+#[must_use]
+pub fn names(constants: &Constants) -> Vec<String> {
     let mut known: Vec<String> = Vec::new();
     for parameter in parameters(constants) {
         known.extend(parameter.name().filter(|name| !known.contains(name)));
     }
+    known
+}
+
+fn unknown(name: &str, constants: &Constants) -> String {
+    let known = names(constants);
     format!(
         "{name}: no constant that is fitted; there are {}",
         known.join(", ")
@@ -172,7 +186,8 @@ mod tests {
     fn a_held_constant_is_no_unknown() {
         let declared = hitch_model_file::dynamic();
         let mut own = Tolerances::default();
-        own.hold("oil.bulk_modulus_pa");
+        own.hold("oil.bulk_modulus_pa", declared.constants())
+            .unwrap();
         let all = parameters(declared.constants()).len();
         assert_eq!(own.unknowns(declared.constants()).len(), all - 1);
     }

@@ -20,7 +20,8 @@ use crate::tolerance_args::ToleranceArgs;
 #[command(
     after_help = "Example: hitch model fit lab-a --model my-hitch.toml --out fitted.toml --report fit.html\n\n\
     Every constant has a prior: the declared value with the tolerance of data sheets (flow curves 20 %, pressures 10 % \
-    to 20 %, bore 2 %, masses 10 %). What the campaign does not determine stays at its declared value and is named."
+    to 20 %, bore 2 %, masses 10 %). What the campaign does not determine stays at its declared value and is named. A constant \
+    that you have measured is kept with --hold."
 )]
 pub struct Args {
     /// Folder of the campaign

@@ -8,6 +8,7 @@ use hitch_model_file::{Template, Valve};
 use hitch_plant::ValveCurve;
 
 use super::{flow_curve, linkage_table};
+use crate::data_sheet::{self, QUESTIONS};
 use crate::error::Error;
 use crate::output;
 use crate::outputs::Outputs;
@@ -49,55 +50,6 @@ pub struct Args {
     #[arg(long)]
     yes: bool,
 }
-
-/// Questions on a terminal: constant and text.
-const QUESTIONS: [(&str, &str); 18] = [
-    ("pump.kind", "Pump, fixed-displacement or load-sensing"),
-    ("cylinder.cylinders", "Number of lift cylinders"),
-    ("cylinder.bore_mm", "Bore of each cylinder, mm"),
-    ("cylinder.stroke_mm", "Cylinder stroke, mm"),
-    (
-        "pump.theoretical_flow_lpm",
-        "Pump, largest displacement times speed, l/min",
-    ),
-    ("pump.standby_pressure_bar", "Pump, standby pressure, bar"),
-    ("compensator.margin_bar", "Compensator margin, bar"),
-    (
-        "check_valve.cracking_pressure_bar",
-        "Check valve, cracking pressure, bar",
-    ),
-    ("relief_valve.set_pressure_bar", "Relief setting, bar"),
-    (
-        "lift_valve.reference_drop_bar",
-        "Lift valve, pressure drop of its flow curve, bar",
-    ),
-    (
-        "lower_valve.reference_drop_bar",
-        "Lowering valve, pressure drop of its flow curve, bar",
-    ),
-    (
-        "solenoid.resistance_ohm",
-        "Solenoids, resistance with wiring, ohm",
-    ),
-    (
-        "loads.light_kg",
-        "Light implement, kg; 0: from the relief setting",
-    ),
-    ("loads.usual_kg", "Most common implement, kg; 0: as above"),
-    ("loads.heavy_kg", "Heaviest implement, kg; 0: as above"),
-    (
-        "sensors.rocker_angle_noise_deg",
-        "Noise of the angle sensor, one sigma, degree",
-    ),
-    (
-        "sensors.cylinder_pressure_noise_bar",
-        "Noise of the cylinder pressure sensor, one sigma, bar",
-    ),
-    (
-        "sensors.pump_pressure_noise_bar",
-        "Noise of the pump pressure sensor, one sigma, bar",
-    ),
-];
 
 /// Runs the command.
 ///
@@ -184,38 +136,21 @@ fn ask_all(template: &mut Template, args: &Args) -> Result<(), Error> {
 
 /// A flow curve with the shape of the default, between the opening current and the current limit.
 fn asked_curve(default: &ValveCurve, title: &str) -> Result<ValveCurve, Error> {
-    let opens = default.threshold_a();
-    let last = default.currents_a()[default.currents_a().len() - 1];
-    let positive = |answer: &str| match answer.trim().replace(',', ".").parse::<f64>() {
-        Ok(number) if number > 0.0 && number <= 1000.0 => Ok(number),
-        _ => Err("it is a number above 0, at most 1000".to_owned()),
-    };
+    let [opens, last, full] = data_sheet::ends(default);
     let asked = |what: &str, default: f64| {
         let mut found = default;
         let question = format!("{title}, {what}");
         ask(&question, &format!("{default:.3}"), |answer| {
-            found = positive(answer)?;
+            found = data_sheet::positive(answer)?;
             Ok(())
         })?;
         Ok::<f64, Error>(found)
     };
     let opens_now = asked("opening current, A", opens)?;
     let last_now = asked("current limit, A", last)?;
-    let full = hitch_plant::units::lpm_from_m3_s(default.saturation_m3_s());
     let full_now = asked("flow at the current limit, l/min", full)?;
-    let moved = |&current: &f64| match current <= opens {
-        true if current == 0.0 => 0.0,
-        true => current * opens_now / opens,
-        false => opens_now + (current - opens) * (last_now - opens_now) / (last - opens),
-    };
-    let currents = default.currents_a().iter().map(moved).collect();
-    let flows = default.flows_m3_s().iter();
-    let flows = flows.map(|flow| flow * full_now / full).collect();
-    ValveCurve::new(currents, flows).map_err(|_| {
-        Error::Usage(format!(
-            "{title}: the current limit has to be above the opening current"
-        ))
-    })
+    data_sheet::curve(default, [opens_now, last_now, full_now])
+        .map_err(|why| Error::Usage(format!("{title}: {why}")))
 }
 
 /// Asks until the answer is valid; an empty one keeps the default.

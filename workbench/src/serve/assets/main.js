@@ -1,10 +1,12 @@
 // @ts-check
 /** State of the page, and handlers of its controls. */
 import { connectLoop, followModel, redrawLoop } from "./closed_loop.js";
+import { connectController, drawController } from "./controller.js";
 import { byId, element, painted, sigmas } from "./dom.js";
 import { worstCell } from "./error_map.js";
 import { faultLines } from "./fault.js";
 import { connectFiles } from "./files.js";
+import { connectFirst, drawFirst, held } from "./first_model.js";
 import { drawMissing, drawRanking, insert, meaning } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
 import { endOverlay, isOverlaid, openOverlay, overlayBox, previewOverlay, refreshOverlay } from "./overlay.js";
@@ -17,6 +19,7 @@ import { Refused, ask, begin, follow, leave, post } from "./server.js";
 import { chosen, listSignals } from "./signals.js";
 import { connectTabs, openTab } from "./tabs.js";
 import { connectTrials } from "./trial.js";
+import { drawWay } from "./way.js";
 
 /** Set before a control acts.
  * @type {State} */
@@ -112,7 +115,10 @@ function draw() {
   byId("title").title = meaning(state, "σ");
   byId("words").replaceChildren(...state.words.flatMap(({ term, means }) => [element("dt", {}, term), element("dd", {}, means)]));
   drawCompared(state, visits);
+  drawWay(state);
+  drawFirst(state);
   drawModel(state, acts);
+  drawController(state);
   drawMissing(state, { ...acts, signed: signed?.name });
   followModel(state);
 }
@@ -314,7 +320,9 @@ byId("undo").addEventListener("click", () => acts.go(state.at - 1));
 byId("redo").addEventListener("click", () => acts.go(state.at + 1));
 byId("fit").addEventListener("click", () => acts.run({ task: "fit" }));
 byId("rank").addEventListener("click", () => acts.run({ task: "rank" }));
-byId("explain").addEventListener("click", () => acts.run({ task: "explain" }));
+byId("explain").addEventListener("click", () => acts.run({ task: "explain", hold: held(),
+  budget_s: Number(/** @type {HTMLInputElement} */ (byId("explain-budget")).value),
+  data_sheet: /** @type {HTMLInputElement} */ (byId("explain-sheet")).checked }));
 byId("cancel").addEventListener("click", guarded(async () => {
   await post("cancel", {});
   await refresh();
@@ -339,5 +347,7 @@ new ResizeObserver(() => {
   resized = requestAnimationFrame(() => { redraw(undefined).catch(sayError); });
 }).observe(byId("plot-view"));
 connectSecond(launch, refresh);
+connectFirst(another, acts.run);
+connectController(guarded, refresh, acts.run);
 connectLoop(sayError);
 open();

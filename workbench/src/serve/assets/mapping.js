@@ -1,12 +1,10 @@
 // @ts-check
 /** The proposed assignment of logs as an editable table. */
 import { element } from "./dom.js";
+import { knownPoints } from "./known_points.js";
 
-/** Titles of a run's columns.
- * @type {Record<string, string>} */
-const TITLES = { time_s: "time", lift_current_a: "lift current", lower_current_a: "lowering current",
-  pump_pressure_bar: "pump pressure", cylinder_pressure_bar: "cylinder pressure", flow_lpm: "flow",
-  rocker_angle_deg: "rocker angle", oil_temperature_c: "oil temperature" };
+/** Start of the value of a unit whose values are those of a sensor. */
+const RAW = "raw:";
 
 /** Content of the table: functions that read it.
  * @type {() => Record<string, unknown>} */
@@ -75,17 +73,26 @@ function select(options, chosen, label) {
 function table(group, signals) {
   const wanted = signals.filter((signal) => group.times || signal.key !== "time_s");
   const rows = wanted.map((signal) => row(group, signal));
-  const used = group.taken.length;
-  const others = group.columns.length - used;
   const shown = element("div", {},
     element("h3", {}, group.files.length > 3 ? `${group.files.slice(0, 2).join(", ")} and ${group.files.length - 2} more` : group.files.join(", ")),
     group.untold ? element("p", { class: "untold" }, `${group.untold}. Choose its column.`) : "",
     element("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": `Columns of ${group.files[0]}` },
       element("table", {}, head(["signal", "column of the log", "unit", "confidence", "reason"]),
         element("tbody", {}, ...rows.map((one) => one.shown)))),
-    ...group.notes.map((note) => element("p", { class: "note" }, note)),
-    element("p", { class: "note" }, others > 0 ? `${count(others, "other column")} ${others === 1 ? "is" : "are"} ignored.` : ""));
+    ...leftOut(group));
   return { shown, read: () => rows.flatMap((one) => one.read()) };
+}
+
+/** What was assumed, and the columns that are left out with the reason.
+ * @param {ProposedGroup} group */
+function leftOut(group) {
+  const { notes, unused } = group;
+  const none = unused.length ? [`left out: ${unused.map((name) => `"${name}"`).join(", ")}: ` +
+    `${unused.length === 1 ? "its name is" : "their names are"} none of a signal of a run; choose ${unused.length === 1 ? "it" : "them"} above if ${unused.length === 1 ? "it is" : "they are"}`] : [];
+  const lines = [...notes, ...none];
+  if (lines.length === 0) return [];
+  return [element("details", { class: "left-out", open: true }, element("summary", {}, "Assumed, and left out"),
+    element("ul", {}, ...lines.map((line) => element("li", {}, line))))];
 }
 
 /** The row of a signal.
@@ -93,32 +100,40 @@ function table(group, signals) {
  * @param {Signal} signal */
 function row(group, signal) {
   const taken = group.taken.find((one) => one.channel === signal.key);
-  const title = TITLES[signal.key] ?? signal.key;
+  const { title } = signal;
   const named = (/** @type {ProposedGroup["columns"][number]} */ column) => /** @type {[string, string]} */ (
     [column.name, column.unit ? `${column.name} (${column.unit})` : column.name]);
   const column = select([["", "– none –"], ...group.columns.map(named)], taken?.column ?? "", `Column for ${title}`);
   const units = [...new Set([...signal.units, ...(taken?.unit ? [taken.unit] : [])])];
   const stated = /** @type {[string, string]} */ (["", group.own_units ? "of the DBC" : "of the log"]);
-  const unit = select([stated, ...units.map((one) => /** @type {[string, string]} */ ([one, one]))], taken?.unit ?? "",
-    `Unit of ${title}`);
-  unit.disabled = group.own_units;
+  const plain = group.own_units ? [] : units.map((one) => /** @type {[string, string]} */ ([one, one]));
+  const raw = signal.raw.map((one) => /** @type {[string, string]} */ ([RAW + one, `${one}, two known points`]));
+  const unit = select([stated, ...plain, ...raw], taken?.unit ?? "", `Unit of ${title}`);
+  const points = knownPoints(signal);
   const confidence = element("td", taken?.assumed ? { class: "check" } : {}, taken ? (taken.assumed ? "check" : "certain") : "");
   const reason = element("td", { class: "reason" }, taken?.reason ?? "");
+  const rawUnit = () => (unit.value.startsWith(RAW) ? unit.value.slice(RAW.length) : null);
   const edited = () => {
     confidence.className = "";
     confidence.textContent = column.value ? "yours" : "";
     reason.textContent = column.value ? "chosen by you" : "";
   };
   column.addEventListener("change", () => {
-    // The unit that the log states for this column, if it is one of the signal.
+    // The unit that the log states for this column, if it is one of the signal, or that of a sensor.
     const own = group.columns.find((one) => one.name === column.value)?.unit;
-    unit.value = !group.own_units && own && units.includes(own) ? own : own || group.own_units || signal.key === "time_s" ? "" : signal.unit;
+    if (own && signal.raw.includes(own)) unit.value = RAW + own;
+    else unit.value = !group.own_units && own && units.includes(own) ? own : own || group.own_units || signal.key === "time_s" ? "" : signal.unit;
+    points.show(rawUnit());
     edited();
   });
-  unit.addEventListener("change", edited);
-  const shown = element("tr", {}, element("th", { scope: "row" }, title), element("td", {}, column), element("td", {}, unit),
-    confidence, reason);
-  const read = () => (column.value ? [{ channel: signal.key, column: column.value, unit: unit.value || null }] : []);
+  unit.addEventListener("change", () => {
+    points.show(rawUnit());
+    edited();
+  });
+  const shown = element("tr", {}, element("th", { scope: "row" }, title), element("td", {}, column),
+    element("td", {}, unit, points.shown), confidence, reason);
+  const read = () => (column.value
+    ? [{ channel: signal.key, column: column.value, unit: (rawUnit() ?? unit.value) || null, points: points.read() }] : []);
   return { shown, read };
 }
 

@@ -2,7 +2,6 @@
 /** The model: its steps with their errors, and its effects with a slider for each parameter. */
 import { byId, colour, element, number, sigmas } from "./dom.js";
 import { library } from "./run_plot.js";
-import { address } from "./server.js";
 
 /** Positions of a slider. */
 const POSITIONS = 1000;
@@ -24,7 +23,6 @@ export function drawModel(state, acts) {
   undo.disabled = state.at === 0;
   redo.disabled = state.at + 1 >= state.steps.length;
   /** @type {HTMLButtonElement} */ (byId("fit")).disabled = state.effects.length === 0;
-  /** @type {HTMLAnchorElement} */ (byId("save")).href = address("model");
   byId("steps").replaceChildren(...state.steps.map((step, index) =>
     element("li", { class: index > state.at ? "undone" : null }, element("button", { type: "button",
       "aria-current": index === state.at ? "step" : null, onclick: () => acts.go(index) },

@@ -62,14 +62,20 @@ export function address(path, query = {}) {
   return `api/${path}?${new URLSearchParams(pairs)}`;
 }
 
+/** The refusal that a response has.
+ * @param {Response} response */
+export async function refusal(response) {
+  const body = await response.json().catch(() => ({ fault: { what: `The server answered ${response.status}.` } }));
+  return new Refused(body.fault);
+}
+
 /** @param {Promise<Response>} request */
 async function answer(request) {
   const response = await request.catch(() => {
     throw new Refused({ what: "The server does not answer.", mend: "Start hitch serve again." });
   });
-  const body = await response.json().catch(() => ({ fault: { what: `The server answered ${response.status}.` } }));
-  if (!response.ok) throw new Refused(body.fault);
-  return body;
+  if (!response.ok) throw await refusal(response);
+  return response.json();
 }
 
 /** Follows the running computation of this tab. An idle tab has no connection, as browsers limit their number.

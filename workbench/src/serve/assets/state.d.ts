@@ -6,6 +6,12 @@ interface State extends ErrorMap<Cell, MeasuredChannel> {
   description: string;
   /** Name and kind of the first model. */
   model: string;
+  /** Name of the first model before it; null if there is none. */
+  earlier_model: string | null;
+  /** The steps from data to a saved calibration. */
+  way: WayStep[];
+  constants: { names: string[]; fitted: FittedConstants | null };
+  tuned: TunedCalibration | null;
   /** What the terms of results mean. */
   words: { term: string; means: string }[];
   /** Each with its error in sigma. */
@@ -21,6 +27,34 @@ interface State extends ErrorMap<Cell, MeasuredChannel> {
   explained: Explained | null;
   /** Title of the running computation. */
   job: string | null;
+}
+
+/** A step of the way: its state in words, and the tab where it is made. */
+interface WayStep {
+  key: string;
+  title: string;
+  tab: string;
+  done: boolean;
+  state: string;
+}
+
+/** Constants of the first model that were fitted. */
+interface FittedConstants {
+  error_before: number;
+  error_after: number;
+  headings: string[];
+  /** Cells as text, and whether the constant moved further than its tolerance. */
+  rows: { cells: string[]; beyond: boolean }[];
+  not_determined: string[];
+  at_an_end: string[];
+}
+
+/** A tuned calibration: its figures as text with whether their limits are met, and its changed values. */
+interface TunedCalibration {
+  sentence: string | null;
+  headings: string[];
+  figures: { cells: string[]; met: boolean | null }[];
+  changes: { key: string; before: number; after: number }[];
 }
 
 interface MeasuredChannel extends Channel {
@@ -190,8 +224,12 @@ interface ProposedLog {
 
 interface Signal {
   key: string;
+  /** Name for a reader. */
+  title: string;
   unit: string;
   units: string[];
+  /** Units of a sensor, with which two points have to be known. */
+  raw: string[];
 }
 
 /** Logs with equal columns. */
@@ -201,6 +239,9 @@ interface ProposedGroup {
   own_units: boolean;
   columns: { name: string; unit: string | null }[];
   taken: { channel: string; column: string; unit: string | null; reason: string; assumed: boolean }[];
+  /** What was assumed, and columns of a signal that are left out with the reason. */
   notes: string[];
+  /** The other columns that are not used. */
+  unused: string[];
   untold: string | null;
 }

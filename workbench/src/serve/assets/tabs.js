@@ -1,9 +1,9 @@
 // @ts-check
-/** The tabs of the column of work: error map, effects, model, closed loop. */
+/** The tabs of the column of work: error map, effects, model, controller, closed loop. */
 import { byId } from "./dom.js";
 
 /** Names of the tabs, in their order. */
-const TABS = ["map", "missing", "model", "loop"];
+const TABS = ["map", "missing", "model", "controller", "loop"];
 
 /** Called with the opened tab: a plot is drawn only where it has a width.
  * @type {(tab: string) => void} */

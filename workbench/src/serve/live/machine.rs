@@ -1,13 +1,12 @@
 //! The models and calibrations of the closed loop.
 
 use hitch_plant::Model;
-use hitch_quantities::{Calibration, ValidCalibration};
+use hitch_quantities::ValidCalibration;
 
-use crate::calibrate::calibrate;
 use crate::closed_loop::with_dynamics;
 use crate::error::Error;
-use crate::explanation::rebuilt;
 use crate::serve::session::Session;
+use crate::serve::tuned::calibration;
 
 /// The plant, and both calibrations.
 #[derive(Debug, Clone)]
@@ -30,12 +29,9 @@ pub struct Models {
 impl Models {
     /// The models of a session.
     pub fn of(session: &Session) -> Self {
-        let subject = session.subject();
-        let name = format!("{}-{}", subject.model.name, subject.experiment().name);
-        let estimate = &session.fit().estimate;
         Self {
-            initial: subject.model.clone(),
-            present: rebuilt(&session.model(), estimate, name),
+            initial: session.subject().model.clone(),
+            present: session.rebuilt(),
         }
     }
 
@@ -58,9 +54,4 @@ impl Models {
             rebuilt: self.rebuilt()?,
         })
     }
-}
-
-fn calibration(model: &Model) -> Result<ValidCalibration, Error> {
-    calibrate(model, &Calibration::nominal())
-        .map_err(|error| Error::Usage(format!("no calibration for {}: {error}", model.name)))
 }

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use hitch_campaign::survey::{check_source, fits, run_columns};
 use hitch_campaign::{Bench, Campaign, CampaignError};
 use hitch_plant::Linkage;
 use serde::Deserialize;
 
-use super::proposal::{Group, MANIFEST, Proposal};
+use super::proposal::{Group, MANIFEST, Proposal, title};
 use crate::error::Error;
 use crate::import::manifest::{Log, campaign, path_from};
 use crate::import::{Kind, Mapping};
@@ -28,6 +29,53 @@ struct Source {
     column: String,
     /// `None` if the log states it.
     unit: Option<String>,
+    /// Two known points of a sensor, each its reading and the value of the signal.
+    points: Option<[[f64; 2]; 2]>,
+}
+
+impl Source {
+    /// Why values of the column are not those of the signal; `None` if the unit tells how to convert them.
+    fn lacks_unit(&self, group: &Group) -> Option<String> {
+        if self.points.is_some() {
+            return None;
+        }
+        let column = group.columns.iter().find(|one| one.name == self.column)?;
+        let unit = self.unit.as_deref().or(column.unit.as_deref());
+        // A voltage or a percentage fits every signal, but needs two points.
+        let converts = |unit: &str| {
+            let source = format!("{}:{unit}", self.column);
+            check_source(&self.channel, &source).is_ok()
+        };
+        match unit {
+            Some(unit) if fits(unit, &self.channel) && converts(unit) => None,
+            Some(unit) => Some(format!(
+                "\"{}\" is in {unit}, which is not a unit of {}",
+                self.column,
+                title(&self.channel)
+            )),
+            // A column with the name of a run's column has its unit in the name.
+            None if run_columns().any(|(known, _)| known == self.column) => None,
+            None => Some(format!("the log states no unit of \"{}\"", self.column)),
+        }
+    }
+
+    /// As it is written in a manifest.
+    fn written(&self) -> String {
+        let unit = self.unit.as_deref();
+        match (self.points, unit) {
+            (Some([first, second]), _) => format!(
+                "{}:{} {}={} {}={}",
+                self.column,
+                unit.unwrap_or_default(),
+                first[0],
+                first[1],
+                second[0],
+                second[1]
+            ),
+            (None, Some(unit)) => format!("{}:{unit}", self.column),
+            (None, None) => self.column.clone(),
+        }
+    }
 }
 
 /// The test stand of a log.
@@ -104,16 +152,19 @@ fn unplaced(folder: &Path, error: Error) -> Error {
 }
 
 fn mapping(group: &Group, given: &[Source]) -> Result<Mapping, Error> {
-    let source = |source: &Source| match &source.unit {
-        Some(unit) => format!("{}:{unit}", source.column),
-        None => source.column.clone(),
-    };
+    let heading = group.headings.first().map_or("", String::as_str);
+    for source in given {
+        if let Some(what) = source.lacks_unit(group) {
+            let mend = "choose its unit in the table; for the raw values of a sensor, choose \"V, two known points\" or another raw \
+                        unit and enter two readings with their true values";
+            return Err(CampaignError::of_file(Path::new(heading), what, mend).into());
+        }
+    }
     let named = given
         .iter()
-        .map(|given| (given.channel.clone(), source(given)));
+        .map(|given| (given.channel.clone(), given.written()));
     let named: Vec<(String, String)> = named.collect();
     Mapping::given(&group.columns, group.kind, &named).map_err(|untold| {
-        let heading = group.headings.first().map_or("", String::as_str);
         CampaignError::of_file(Path::new(heading), untold.what, "assign it in the table").into()
     })
 }

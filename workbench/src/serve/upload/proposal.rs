@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::survey::{LogColumn, check_source, is_bus, run_columns, usual_units};
+use hitch_campaign::survey::{LogColumn, TIMES, check_source, is_bus, run_columns, usual_units};
 use hitch_campaign::{Campaign, CampaignError};
 use hitch_plant::Linkage;
 use serde_json::{Value, json};
@@ -99,7 +99,7 @@ impl Proposal {
         let log = |log: &PathBuf| json!({ "file": file_name(log), "load_kg": load_in_name(log) });
         let signal = |(name, unit): (&'static str, &'static str)| {
             let units: Vec<&str> = usual_units(name).collect();
-            json!({ "key": name, "unit": unit, "units": units })
+            json!({ "key": name, "unit": unit, "units": units, "raw": raw_units(name, &units), "title": title(name) })
         };
         json!({
             "name": name,
@@ -122,6 +122,30 @@ fn check_files(folder: &Path) -> Result<(), Error> {
             Err(CampaignError::of_file(&folder.join(MANIFEST), what, mend).into())
         }
     }
+}
+
+/// Name of a signal for a reader.
+pub fn title(channel: &str) -> &str {
+    match channel {
+        "time_s" => "time",
+        "lift_current_a" => "lift current",
+        "lower_current_a" => "lowering current",
+        "pump_pressure_bar" => "pump pressure",
+        "cylinder_pressure_bar" => "cylinder pressure",
+        "flow_lpm" => "flow",
+        "rocker_angle_deg" => "rocker angle",
+        "oil_temperature_c" => "oil temperature",
+        other => other,
+    }
+}
+
+/// Units of a sensor whose values become those of a signal by two known points. Times have none.
+fn raw_units(name: &str, units: &[&str]) -> Vec<&'static str> {
+    const RAW: [&str; 5] = ["V", "mV", "mA", "%", "counts"];
+    let has_none = name == TIMES;
+    RAW.into_iter()
+        .filter(|unit| !has_none && !units.contains(unit))
+        .collect()
 }
 
 fn add(groups: &mut Vec<Group>, group: Group) {
@@ -147,7 +171,7 @@ impl Group {
             mut notes,
         } = found;
         let (mapping, untold) = Mapping::draft(&columns, kind, &[]);
-        notes.extend(mapping.notes.iter().cloned());
+        notes.extend(mapping.notes.iter().map(|note| note.what.clone()));
         for column in &mut columns {
             column.values = Vec::new();
             column.lasts_s = None;
@@ -161,6 +185,25 @@ impl Group {
             mapping,
             untold,
         }
+    }
+
+    /// Names of the columns that are neither taken nor named in a note.
+    fn unused(&self) -> Vec<&str> {
+        let is_taken = |name: &str| {
+            let mut sources = self.mapping.taken.iter();
+            sources.any(|taken| {
+                let parts = check_source(taken.channel, &taken.source);
+                parts.map_or(taken.source == name, |(known, _)| known == name)
+            })
+        };
+        let is_noted = |name: &str| {
+            let said = format!("left out: \"{name}\"");
+            self.notes.iter().any(|note| note.starts_with(&said))
+        };
+        let names = self.columns.iter().map(|column| column.name.as_str());
+        names
+            .filter(|name| !is_taken(name) && !is_noted(name))
+            .collect()
     }
 
     fn view(&self) -> Value {
@@ -187,6 +230,7 @@ impl Group {
             "columns": self.columns.iter().map(column).collect::<Vec<_>>(),
             "taken": self.mapping.taken.iter().map(taken).collect::<Vec<_>>(),
             "notes": self.notes,
+            "unused": self.unused(),
             "untold": self.untold.as_ref().map(|untold| &untold.what),
         })
     }

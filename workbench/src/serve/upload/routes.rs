@@ -8,7 +8,9 @@ use axum::extract::{DefaultBodyLimit, Query, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::routing::post;
 use axum::{Json, Router};
+use hitch_campaign::Campaign;
 use hitch_input::input_error::InputError;
+use hitch_plant::Model;
 use serde::Deserialize;
 use serde_json::json;
 
@@ -20,7 +22,7 @@ use super::proposal::Proposal;
 use crate::error::Error;
 use crate::serve::routes::{Answer, Known, Of, Refusal, blocking, find, lock};
 use crate::serve::sessions::{Sessions, Shared};
-use crate::serve::source::Subject;
+use crate::serve::source::{Origin, Subject};
 
 /// All routes of uploads.
 pub fn routes() -> Router<Arc<Sessions>> {
@@ -131,7 +133,36 @@ struct Open {
     assignment: Assignment,
 }
 
-/// Opens the campaign in the session, and deletes the files. Answers which logs are joined, split or cut.
+/// A campaign that was opened from an upload; its files are kept as long as it is open, as another first model reads them again.
+#[derive(Debug)]
+struct Opened {
+    upload: Arc<Upload>,
+    assignment: Assignment,
+}
+
+impl Opened {
+    /// The campaign for a model, and which logs are joined, split or cut.
+    fn campaign(&self, model: &Model) -> Result<(Campaign, Vec<String>), Error> {
+        let upload = &self.upload;
+        let proposal = upload.proposal.lock();
+        let proposal = proposal.unwrap_or_else(PoisonError::into_inner);
+        let unknown = || Error::Usage("the files have not been surveyed".to_owned());
+        let proposal = proposal.as_ref().ok_or_else(unknown)?;
+        let read = self
+            .assignment
+            .campaign(upload.path(), proposal, model.linkage());
+        read.map_err(|error| named(upload, error))
+    }
+}
+
+impl Origin for Opened {
+    fn subject(self: Arc<Self>, model: Model) -> Result<Subject, Error> {
+        let (campaign, _) = self.campaign(&model)?;
+        Ok(Subject::new(self, &campaign, model))
+    }
+}
+
+/// Opens the campaign in the session. Answers which logs are joined, split or cut.
 async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let session = find(&sessions, &wanted.session)?;
     let upload = upload(&session, &wanted.upload)?;
@@ -147,12 +178,14 @@ async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let subject = blocking(move || {
         let proposal = from.proposal.lock().unwrap_or_else(PoisonError::into_inner);
         let unknown = || Refusal::conflict("the files have not been surveyed");
-        let proposal = proposal.as_ref().ok_or_else(unknown)?;
-        let campaign = wanted
-            .assignment
-            .campaign(from.path(), proposal, model.linkage());
-        let (campaign, notes) = campaign.map_err(|error| named(&from, error))?;
-        Ok::<_, Refusal>((Subject::new(&campaign, model), notes))
+        proposal.as_ref().ok_or_else(unknown)?;
+        drop(proposal);
+        let opened = Arc::new(Opened {
+            upload: from,
+            assignment: wanted.assignment,
+        });
+        let (campaign, notes) = opened.campaign(&model)?;
+        Ok::<_, Refusal>((Subject::new(opened, &campaign, model), notes))
     });
     let (subject, notes) = subject.await??;
     let subject = Arc::new(subject);

@@ -1,7 +1,5 @@
 //! JSON views of effects: catalogue, ranking, explanation.
 
-use std::sync::Arc;
-
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
 use hitch_identification::selection::candidate;
@@ -10,6 +8,7 @@ use serde_json::{Value, json};
 
 use crate::explanation::{Candidate, Corrected, Step, explained as share_explained, parameters};
 use crate::serve::session::{Explained, Ranking, Session};
+use crate::words;
 
 /// Texts of an effect.
 pub fn described(effect: &dyn Effect) -> Value {
@@ -56,7 +55,7 @@ fn ranked(ranking: &Ranking) -> Value {
             "explains": shown.explains,
             "error_after": shown.error_after,
             "confidence": shown.confidence,
-            "in_words": in_words(shown.confidence),
+            "in_words": words::in_words(shown.confidence),
             "indistinguishable": shown.indistinguishable,
             "parameters": shown.parameters,
         }))
@@ -71,12 +70,8 @@ fn ranked(ranking: &Ranking) -> Value {
 
 /// The explanation, if it starts from the present model.
 pub fn explained(session: &Session) -> Value {
-    let present = &session.present().evaluated;
-    let explained = session.explained.as_ref();
-    match explained.filter(|explained| Arc::ptr_eq(&explained.of, present)) {
-        Some(explained) => found(explained),
-        None => Value::Null,
-    }
+    let explained = session.present_explanation();
+    explained.map_or(Value::Null, |explained| found(explained))
 }
 
 fn found(explained: &Explained) -> Value {
@@ -90,7 +85,7 @@ fn found(explained: &Explained) -> Value {
             "error_after": shown.error_after,
             "held_out_after": shown.held_out_after,
             "confidence": shown.confidence,
-            "in_words": in_words(shown.confidence),
+            "in_words": words::in_words(shown.confidence),
             "indistinguishable": shown.indistinguishable,
             "parameters": shown.parameters,
         })
@@ -120,15 +115,4 @@ fn constants(corrected: &Corrected, error_before: f64) -> Value {
         "moved": corrected.moved().collect::<Vec<_>>(),
         "curves": curves.map(curve).collect::<Vec<_>>(),
     })
-}
-
-/// A probability in words.
-fn in_words(confidence: f64) -> &'static str {
-    match confidence {
-        share if share >= 0.95 => "nearly certain",
-        share if share >= 0.7 => "likely",
-        share if share >= 0.3 => "possible",
-        share if share >= 0.005 => "unlikely",
-        _ => "very unlikely",
-    }
 }

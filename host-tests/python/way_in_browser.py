@@ -1,0 +1,119 @@
+"""The whole way on the page of `hitch serve`, in a headless Chromium: another first model, values of data sheets, a fit of the constants,
+a calibration tuned and saved; the list of steps says where one is.
+
+Called with the page's address, the browser, and a folder for pictures.
+"""
+
+import sys
+import zipfile
+from pathlib import Path
+
+from playwright.sync_api import Page, expect
+
+from browser_view import DARK, DESKTOP, PHONE, assert_accessible, assert_fits, opened, story
+
+STEPS = ["data", "model", "fit", "effects", "calibration", "loop", "tuning", "save"]
+
+
+def step(page: Page, key: str):
+    """A step of the list."""
+    return page.locator(f"#way [data-step={key}]")
+
+
+def first_model(page: Page) -> None:
+    """The first model is exchanged and comes back; values of a data sheet make another; a wrong value is refused."""
+    step(page, "model").click()
+    page.locator("#first > summary").click()
+    page.click("#first-dynamic")
+    expect(page.locator("#first-name")).to_contain_text("dynamic")
+    expect(step(page, "model")).to_contain_text("dynamic")
+    expect(page.locator("#subtitle")).to_contain_text("dynamic")
+    page.click("#first-back")
+    expect(page.locator("#first-name")).to_contain_text("nominal")
+    before = page.locator("#title").inner_text()
+    page.locator("#sheet > summary").click()
+    bore = page.locator("[data-name='cylinder.bore_mm']")
+    bore.fill(str(float(bore.input_value()) * 1.05))
+    page.locator("#sheet-form button").click()
+    expect(page.locator("#first-name")).to_contain_text("data-sheet")
+    assert page.locator("#title").inner_text() != before
+    page.click("#first-back")
+    expect(page.locator("#title")).to_have_text(before)
+
+
+def refused(page: Page) -> None:
+    """A value that is no number is refused with the name of its constant."""
+    page.wait_for_selector("#views[data-ready]")
+    step(page, "model").click()
+    page.locator("#first > summary").click()
+    page.locator("#sheet > summary").click()
+    page.locator("[data-name='cylinder.bore_mm']").fill("wide")
+    page.locator("#sheet-form button").click()
+    expect(page.locator("#first-fault")).to_contain_text("cylinder.bore_mm")
+    assert_accessible(page)
+
+
+def constants(page: Page, pictures: Path, view: str) -> None:
+    """The constants are fitted but for the one that is held."""
+    step(page, "fit").click()
+    page.locator("#constants-view > summary").click()
+    page.locator("#constants-view details > summary").click()
+    page.get_by_label("cylinder.bore_mm", exact=True).check()
+    page.screenshot(path=pictures / f"way_hold_{view}.png")
+    page.click("#constants-fit")
+    expect(page.locator("#constants-fitted table")).to_be_visible()
+    expect(step(page, "fit")).to_contain_text("→")
+    names = page.locator("#constants-fitted tbody th").all_inner_texts()
+    assert names and "cylinder.bore_mm" not in names, names
+    page.screenshot(path=pictures / f"way_constants_{view}.png")
+
+
+def calibration(page: Page, pictures: Path, view: str) -> None:
+    """A tuned calibration says of each limit whether it is met; everything is saved in one archive."""
+    step(page, "tuning").click()
+    page.fill("#tune-trials", "10")
+    page.click("#tune")
+    verdicts = page.locator("#tuned tr.met, #tuned tr.missed")
+    expect(verdicts.first).to_be_visible()
+    for row in verdicts.all():
+        expect(row).to_contain_text("limit met" if row.get_attribute("class") == "met" else "limit not met")
+    expect(step(page, "tuning")).to_contain_text("limits met")
+    page.screenshot(path=pictures / f"way_tuned_{view}.png")
+    expect(step(page, "save")).to_contain_text("not saved")
+    with page.expect_download() as saving:
+        page.click("#save-all")
+    names = sorted(zipfile.ZipFile(saving.value.path()).namelist())
+    assert names == ["calibration.toml", "model.toml", "report.html", "tuned.toml"], names
+    expect(step(page, "save").locator("small")).to_have_text("saved")
+    for button, name in (("#save-report", "report.html"), ("#save-controller", "calibration.toml")):
+        with page.expect_download() as saving:
+            page.click(button)
+        assert saving.value.suggested_filename == name
+
+
+def main() -> None:
+    address, name, folder = sys.argv[1:4]
+    with story(name, folder) as (browser, pictures, faults):
+        for view, options in {"desktop": DESKTOP, "phone": PHONE, "dark": DARK}.items():
+            page = opened(browser, address, options, faults)
+            page.wait_for_selector("#views[data-ready]")
+            assert [one.get_attribute("data-step") for one in page.locator("#way button").all()] == STEPS
+            if view == "desktop":
+                first_model(page)
+                constants(page, pictures, view)
+                calibration(page, pictures, view)
+            for tab in ("model", "controller"):
+                page.click(f"#tab-{tab}")
+                closed = page.locator(f"#{tab} > details:not([open]) > summary")
+                while closed.count():
+                    closed.first.click()
+                page.screenshot(path=pictures / f"way_{tab}_{view}.png")
+                assert_fits(page)
+                assert_accessible(page)
+        # A refused request is a message of the console.
+        refused(opened(browser, address, DESKTOP, []))
+    print("the way went well")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,205 @@
+//! The first model of a session: exchanged for a file, a starting point or the values of data sheets, without a restart.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use axum::body::Bytes;
+use axum::extract::{DefaultBodyLimit, Query, State};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use hitch_input::source_file::SourceFile;
+use hitch_model_file::{Template, Valve};
+use hitch_plant::Model;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::routes::{Answer, Known, Of, Refusal, blocking, find, lock};
+use super::sessions::{Sessions, Shared};
+use crate::data_sheet::{self, QUESTIONS};
+use crate::error::Error;
+
+/// Maximum size of a model file, bytes.
+pub const LARGEST_MODEL: usize = 1 << 20;
+
+/// The valves of a data sheet, with what each is called.
+const VALVES: [(Valve, &str); 2] = [
+    (Valve::Lift, "Lift valve"),
+    (Valve::Lower, "Lowering valve"),
+];
+
+/// What is asked of a valve, in the order of [`data_sheet::ends`].
+const ENDS: [(&str, &str); 3] = [
+    ("opens", "opening current, A"),
+    ("limit", "current limit, A"),
+    ("full", "flow at the current limit, l/min"),
+];
+
+/// All routes of the first model.
+pub fn routes() -> Router<Arc<Sessions>> {
+    let file = post(file).layer(DefaultBodyLimit::max(LARGEST_MODEL));
+    Router::new()
+        .route("/{token}/api/first/file", file)
+        .route("/{token}/api/first/named", post(named))
+        .route("/{token}/api/first/sheet", get(sheet).post(from_sheet))
+        .route("/{token}/api/first/back", post(back))
+}
+
+#[derive(Debug, Deserialize)]
+struct OfFile {
+    session: String,
+    name: String,
+}
+
+async fn file(State(sessions): Known, Query(of): Query<OfFile>, body: Bytes) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let model = blocking(move || parsed(&of.name, &body)).await??;
+    exchange(session, model).await
+}
+
+/// The model of a file.
+///
+/// # Errors
+/// If it is no model.
+pub fn parsed(name: &str, bytes: &[u8]) -> Result<Model, Error> {
+    let path = Path::new(name);
+    Ok(hitch_model_file::parse(&SourceFile::of(path, bytes)?)?)
+}
+
+/// A model of the program.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum StartingPoint {
+    Nominal,
+    Dynamic,
+}
+
+#[derive(Debug, Deserialize)]
+struct Named {
+    session: String,
+    name: StartingPoint,
+}
+
+async fn named(State(sessions): Known, Json(wanted): Json<Named>) -> Answer {
+    let session = find(&sessions, &wanted.session)?;
+    let model = match wanted.name {
+        StartingPoint::Nominal => hitch_model_file::nominal(),
+        StartingPoint::Dynamic => hitch_model_file::dynamic(),
+    };
+    exchange(session, model).await
+}
+
+/// The questions of data sheets, with the values of the first model.
+async fn sheet(State(sessions): Known, Query(of): Query<Of>) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let model = lock(&session).subject().model.clone();
+    let template = Template::of(&model.name, &model);
+    let constant = |(name, question): &(&str, &str)| {
+        // A machine does not have every constant.
+        let value = template.get(name).ok()?;
+        Some(json!({ "name": name, "question": question, "value": value }))
+    };
+    let mut questions: Vec<Value> = QUESTIONS.iter().filter_map(constant).collect();
+    for (valve, title) in VALVES {
+        let ends = data_sheet::ends(template.curve(valve));
+        questions.extend(ENDS.iter().zip(ends).map(|((key, what), value)| {
+            json!({
+                "name": format!("{}.{key}", valve.table()),
+                "question": format!("{title}, {what}"),
+                "value": format!("{value:.3}"),
+            })
+        }));
+    }
+    Ok(Json(json!({ "questions": questions })))
+}
+
+/// The answers to changed questions, in the order of the questions.
+#[derive(Debug, Deserialize)]
+struct Answers {
+    session: String,
+    name: String,
+    values: Vec<(String, String)>,
+}
+
+async fn from_sheet(State(sessions): Known, Json(answers): Json<Answers>) -> Answer {
+    let session = find(&sessions, &answers.session)?;
+    let before = lock(&session).subject().model.clone();
+    let model = blocking(move || answers.model(&before)).await??;
+    exchange(session, model).await
+}
+
+impl Answers {
+    /// The model with these values.
+    fn model(&self, before: &Model) -> Result<Model, Error> {
+        let name = self.name.trim();
+        let name = if name.is_empty() { "data-sheet" } else { name };
+        let mut template = Template::of(name, before);
+        let mut ends = VALVES.map(|(valve, _)| data_sheet::ends(template.curve(valve)));
+        for (name, value) in &self.values {
+            match end(name) {
+                Some((valve, end)) => {
+                    ends[valve][end] = data_sheet::positive(value)
+                        .map_err(|why| Error::Usage(format!("{name}: {why}")))?;
+                }
+                None => template.set(name, value).map_err(Error::Usage)?,
+            }
+        }
+        for ((valve, title), ends) in VALVES.into_iter().zip(ends) {
+            if ends != data_sheet::ends(template.curve(valve)) {
+                let curve = data_sheet::curve(template.curve(valve), ends)
+                    .map_err(|why| Error::Usage(format!("{title}: {why}")))?;
+                template.set_curve(valve, curve);
+            }
+        }
+        let text = template.text().map_err(|error| {
+            Error::Usage(format!(
+                "the values make no machine: {}; {}",
+                error.what, error.mend
+            ))
+        })?;
+        parsed(name, text.as_bytes())
+    }
+}
+
+/// Index of the valve and of the end of its curve that a question is about.
+fn end(name: &str) -> Option<(usize, usize)> {
+    let (table, key) = name.split_once('.')?;
+    let valve = VALVES
+        .iter()
+        .position(|(valve, _)| valve.table() == table)?;
+    let end = ENDS.iter().position(|(known, _)| *known == key)?;
+    Some((valve, end))
+}
+
+async fn back(State(sessions): Known, Json(of): Json<Of>) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let mut open = lock(&session);
+    if open.job.is_some() {
+        return Err(busy());
+    }
+    match open.back() {
+        true => Ok(Json(json!({}))),
+        false => Err(Refusal::conflict("there is no earlier first model")),
+    }
+}
+
+/// Evaluates another first model on the campaign of the session.
+async fn exchange(session: Shared, model: Model) -> Answer {
+    let subject = {
+        let open = lock(&session);
+        if open.job.is_some() {
+            return Err(busy());
+        }
+        Arc::clone(open.subject())
+    };
+    let exchanged = blocking(move || subject.exchanged(model)).await??;
+    let mut open = lock(&session);
+    if open.job.is_some() {
+        return Err(busy());
+    }
+    open.exchange(Arc::new(exchanged));
+    Ok(Json(json!({})))
+}
+
+fn busy() -> Refusal {
+    Refusal::conflict("a computation is running; wait for it or cancel it")
+}

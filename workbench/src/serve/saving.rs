@@ -1,0 +1,127 @@
+//! What a session saves: calibration, report, and all files as an archive.
+
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::{Query, State};
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use hitch_controller_host::calibration_file;
+
+use super::routes::{Known, Of, Refusal, blocking, find, lock};
+use super::session::Session;
+use super::sessions::{Sessions, Shared};
+use super::tuned::calibration;
+use super::views;
+use crate::archive::zipped;
+use crate::comparison::Comparison;
+use crate::error::Error;
+use crate::explanation::{self, Found};
+use crate::report::{comparison_page, explanation_page};
+
+const TOML: &str = "application/toml; charset=utf-8";
+
+/// All routes of saved files.
+pub fn routes() -> Router<Arc<Sessions>> {
+    Router::new()
+        .route("/{token}/api/model", get(model))
+        .route("/{token}/api/save/tuned", get(tuned))
+        .route("/{token}/api/save/report", get(report))
+        .route("/{token}/api/save/all", get(all))
+}
+
+async fn model(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
+    let session = find(&sessions, &of.session)?;
+    let mut session = lock(&session);
+    session.saved = Some(Arc::clone(&session.present().evaluated));
+    Ok(attached(TOML, "model.toml", views::model_file(&session)))
+}
+
+async fn tuned(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
+    let session = find(&sessions, &of.session)?;
+    let tuned = lock(&session).present_tuned().cloned();
+    let none = || Refusal::conflict("no calibration is tuned for the present model; tune it first");
+    Ok(attached(
+        TOML,
+        "tuned.toml",
+        tuned.ok_or_else(none)?.text.clone(),
+    ))
+}
+
+async fn report(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
+    let session = find(&sessions, &of.session)?;
+    let page = blocking(move || page(&session)).await?;
+    Ok(attached("text/html; charset=utf-8", "report.html", page))
+}
+
+async fn all(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
+    let session = find(&sessions, &of.session)?;
+    let bytes = blocking(move || archived(&session)).await??;
+    Ok(attached("application/zip", "hitch.zip", bytes))
+}
+
+/// An answer that a browser saves as a file.
+fn attached(kind: &'static str, name: &str, content: impl IntoResponse) -> Response {
+    let headers = [
+        (header::CONTENT_TYPE, kind.to_owned()),
+        (
+            header::CONTENT_DISPOSITION,
+            format!("attachment; filename=\"{name}\""),
+        ),
+    ];
+    (headers, content).into_response()
+}
+
+/// The calibration file of the present model.
+fn calibration_text(session: &Session) -> Result<String, Error> {
+    let calibration = calibration(&session.rebuilt())?;
+    Ok(calibration_file::write(&calibration))
+}
+
+/// The report of the explanation; without one, of the present model against the campaign.
+fn page(session: &Shared) -> String {
+    let (explained, evaluated, model, first) = {
+        let session = lock(session);
+        (
+            session.present_explanation().cloned(),
+            Arc::clone(&session.present().evaluated),
+            session.model(),
+            Arc::clone(session.subject()),
+        )
+    };
+    let Some(explained) = explained else {
+        let comparison = Comparison::of(&evaluated, &first.model);
+        return comparison_page::page(&comparison, &evaluated, &first.model);
+    };
+    let found = explanation::Explained {
+        explanation: explained.explanation.clone(),
+        suggestion: explained.suggestion.clone(),
+        shown: explained.shown.clone(),
+    };
+    let experiment = first.experiment().clone();
+    explanation_page::page(&Found::finished(experiment, model, found))
+}
+
+/// Model, calibration, tuned calibration if there is one, and report.
+fn archived(session: &Shared) -> Result<Vec<u8>, Error> {
+    let (model, calibration, tuned) = {
+        let mut session = lock(session);
+        session.saved = Some(Arc::clone(&session.present().evaluated));
+        (
+            views::model_file(&session),
+            calibration_text(&session)?,
+            session.present_tuned().cloned(),
+        )
+    };
+    let page = page(session);
+    let mut entries = vec![
+        ("model.toml".to_owned(), model.as_bytes()),
+        ("calibration.toml".to_owned(), calibration.as_bytes()),
+        ("report.html".to_owned(), page.as_bytes()),
+    ];
+    if let Some(tuned) = &tuned {
+        entries.push(("tuned.toml".to_owned(), tuned.text.as_bytes()));
+    }
+    zipped(&entries)
+}
