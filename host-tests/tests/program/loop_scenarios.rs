@@ -267,9 +267,10 @@ fn scenarios_of_the_field_say_what_is_required_and_take_settings() {
     assert!(slip.iter().all(met), "{slip:?}");
     let report = std::fs::read_to_string(folder.path().join("slip.html")).unwrap();
     assert_self_contained(&report);
-    // A guard that may not raise the hitch lets it slip.
+    // A guard that may raise the hitch by half a degree only lets the wheels slip more, in percentage points.
     let weak = figures("--scenario slip --set slip.most_raise=0.5");
-    assert!(!met(&weak[0]), "{weak:?}");
+    let [guarded, weak] = [&slip, &weak].map(|figures| figures[0]["value"].as_f64().unwrap());
+    assert!(weak > guarded + 1.0, "{guarded} {weak}");
     let output = run(
         folder.path(),
         &["loop", "--scenario", "depth", "--load", "600"],
