@@ -9,6 +9,8 @@
 //! A ramp rarely begins at a sample. If the lines of two neighbouring samples intersect between them, the intersection
 //! becomes a corner point of the current: a straight line from sample to sample would cut it off.
 
+use std::borrow::Cow;
+
 use hitch_plant::Currents;
 
 use crate::data::condense::Stretches;
@@ -131,7 +133,10 @@ impl Drive {
 
     /// The currents at the points of [`Drive::course_s`], delayed by `skew_s` and shifted by `spreads` sigmas.
     #[must_use]
-    pub fn shifted(&self, skew_s: f64, spreads: f64) -> Vec<Currents> {
+    pub fn shifted(&self, skew_s: f64, spreads: f64) -> Cow<'_, [Currents]> {
+        if skew_s == 0.0 && spreads == 0.0 {
+            return Cow::Borrowed(&self.course.currents);
+        }
         let Course {
             time_s,
             currents,
@@ -275,12 +280,8 @@ impl ConditionedCurrent {
             slope_variance: vec![f64::INFINITY; samples],
         };
         if sigma_a > 0.0 {
-            for behind in REACHES {
-                for ahead in REACHES {
-                    if behind + ahead >= 2 {
-                        lines.try_window(logged_a, sigma_a, behind, ahead);
-                    }
-                }
+            for window in windows() {
+                lines.try_window(logged_a, sigma_a, window);
             }
         }
         let spread_a = (0..samples)
@@ -316,6 +317,48 @@ impl ConditionedCurrent {
     }
 }
 
+/// A window around a sample.
+#[derive(Clone, Copy)]
+struct Window {
+    /// Samples before and after the sample.
+    behind: usize,
+    ahead: usize,
+    /// Sum of the squared distances of its samples from its centre.
+    spread: f64,
+    /// Distance of its centre from the sample.
+    centre: f64,
+    /// Variance of the line's value at the sample, in units of the noise variance.
+    variance: f64,
+}
+
+impl Window {
+    fn new(behind: usize, ahead: usize) -> Self {
+        let n = (behind + ahead + 1) as f64;
+        let centre = (ahead as f64 - behind as f64) / 2.0;
+        let spread = n * (n * n - 1.0) / 12.0;
+        Self {
+            behind,
+            ahead,
+            spread,
+            centre,
+            variance: 1.0 / n + centre * centre / spread,
+        }
+    }
+}
+
+/// All windows, those of the smallest variance first: the first one that is compatible with the noise is the result.
+fn windows() -> Vec<Window> {
+    let pairs = REACHES
+        .iter()
+        .flat_map(|&behind| REACHES.map(|ahead| (behind, ahead)));
+    let mut windows: Vec<Window> = pairs
+        .filter(|(behind, ahead)| behind + ahead >= 2)
+        .map(|(behind, ahead)| Window::new(behind, ahead))
+        .collect();
+    windows.sort_by(|a, b| a.variance.total_cmp(&b.variance));
+    windows
+}
+
 /// Fitted lines, one per sample; variances in units of the noise variance.
 struct Lines {
     value: Vec<f64>,
@@ -325,18 +368,21 @@ struct Lines {
 }
 
 impl Lines {
-    /// Fits a line over `behind..=ahead` around every sample. It replaces the present one if its residuals are
-    /// compatible with the noise and its variance is smaller.
-    fn try_window(&mut self, logged: &[f64], sigma: f64, behind: usize, ahead: usize) {
-        let count = behind + ahead + 1;
-        let n = count as f64;
-        let centre = (ahead as f64 - behind as f64) / 2.0;
-        let spread = n * (n * n - 1.0) / 12.0;
-        let gain = 1.0 / n + centre * centre / spread;
+    /// Fits a line over a window around every sample. It replaces the present one if its residuals are compatible with the
+    /// noise and its variance is smaller.
+    fn try_window(&mut self, logged: &[f64], sigma: f64, window: Window) {
+        let Window {
+            behind,
+            ahead,
+            spread,
+            centre,
+            variance,
+        } = window;
+        let n = (behind + ahead + 1) as f64;
         let freedom = n - 2.0;
         let limit = (freedom + 3.0 * (2.0 * freedom).sqrt()) * sigma * sigma;
         for sample in behind..logged.len().saturating_sub(ahead) {
-            if gain >= self.variance[sample] {
+            if variance >= self.variance[sample] {
                 continue;
             }
             let window = &logged[sample - behind..=sample + ahead];
@@ -356,7 +402,7 @@ impl Lines {
             }
             if square_sum <= limit && largest <= 3.5 * sigma {
                 self.value[sample] = mean - slope * centre;
-                self.variance[sample] = gain;
+                self.variance[sample] = variance;
                 self.slope[sample] = slope;
                 self.slope_variance[sample] = 1.0 / spread;
             }
