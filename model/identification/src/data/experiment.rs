@@ -113,7 +113,7 @@ impl Experiment {
         let runs: Vec<_> = campaign
             .runs
             .par_iter()
-            .map(|run| ReadyRun::new(run, model, sigma, slow_share))
+            .map(|run| ReadyRun::new(run, model, sigma, slow_share, campaign.runs.len()))
             .map(|run| run.started(model, noise))
             .collect();
         let jumps_within_s = jumps_within_s(runs.iter().map(|run| &run.drive));
@@ -191,7 +191,8 @@ impl Experiment {
 }
 
 impl ReadyRun {
-    fn new(run: &Run, model: &Model, sigma: Currents, slow_share: f64) -> Self {
+    /// A run of a campaign of `runs`.
+    fn new(run: &Run, model: &Model, sigma: Currents, slow_share: f64, runs: usize) -> Self {
         let drive = Drive::new(
             &run.time_s,
             &run.lift_current_a,
@@ -220,7 +221,7 @@ impl ReadyRun {
             settling_samples,
             widened: Default::default(),
             averaged: vec![1.0; samples],
-            traces: Traces::new(samples),
+            traces: Traces::new(samples, runs),
             defect_correction: None,
         }
     }
@@ -239,7 +240,7 @@ impl ReadyRun {
     pub(crate) fn started_at(&self, start_angle_deg: f64) -> Self {
         Self {
             start_angle_deg,
-            traces: Traces::new(self.len()),
+            traces: self.traces.emptied(self.len()),
             ..self.clone()
         }
     }
@@ -269,7 +270,7 @@ impl ReadyRun {
         };
         Self {
             bench,
-            traces: Traces::new(self.len()),
+            traces: self.traces.emptied(self.len()),
             ..self
         }
     }
@@ -286,7 +287,7 @@ impl ReadyRun {
         let fine = self.trace(model, nuisance, in_step);
         let coarse_in_time = self.driven(Steps::COARSE, model, nuisance, in_step);
         Self {
-            traces: Traces::new(self.len()),
+            traces: self.traces.emptied(self.len()),
             defect_correction: Some(Arc::new(DefectCorrection::new(&fine, &coarse_in_time))),
             ..self.clone()
         }
@@ -309,7 +310,7 @@ impl ReadyRun {
                 true => Vec::new(),
                 false => stretches.firsts().map(|first| all[first]).collect(),
             }),
-            traces: Traces::new(stretches.len()),
+            traces: self.traces.emptied(stretches.len()),
             defect_correction: None,
             ..*self
         };

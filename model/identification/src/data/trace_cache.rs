@@ -12,10 +12,11 @@ use quick_cache::sync::Cache;
 
 use crate::data::experiment::Nuisance;
 
-/// Samples of cached traces per run: about 5 MB.
-const KEPT_SAMPLES: usize = 120_000;
+/// Samples of cached traces of all runs together, about 100 MB, and of one run at most, about 5 MB.
+const KEPT_SAMPLES: usize = 2_400_000;
+const KEPT_OF_A_RUN: usize = 120_000;
 
-/// Fewest cached traces, regardless of their length.
+/// Fewest cached traces of a run, regardless of their length.
 const FEWEST_KEPT: usize = 6;
 
 /// Difference between the currents of a simulation and the conditioned ones.
@@ -83,14 +84,26 @@ impl Hash for TraceKey {
 #[derive(Debug, Clone)]
 pub(crate) struct Traces {
     kept: Arc<Cache<TraceKey, Arc<Trace>>>,
+    /// Samples that the cache may hold.
+    room: usize,
 }
 
 impl Traces {
-    /// An empty cache for a run of this many samples.
-    pub fn new(samples: usize) -> Self {
-        let traces = (KEPT_SAMPLES / samples.max(1)).max(FEWEST_KEPT);
+    /// An empty cache for a run of this many samples, one of `runs`.
+    pub fn new(samples: usize, runs: usize) -> Self {
+        Self::within(KEPT_OF_A_RUN.min(KEPT_SAMPLES / runs.max(1)), samples)
+    }
+
+    /// An empty cache for the same run with other conditions and this many samples.
+    pub fn emptied(&self, samples: usize) -> Self {
+        Self::within(self.room, samples)
+    }
+
+    fn within(room: usize, samples: usize) -> Self {
+        let traces = (room / samples.max(1)).max(FEWEST_KEPT);
         Self {
             kept: Arc::new(Cache::new(traces)),
+            room,
         }
     }
 
