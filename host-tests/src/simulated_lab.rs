@@ -21,13 +21,27 @@ const LOAD_SIGMA: f64 = 0.005;
 /// The second rig's plan of a lab campaign, driven on `rig`.
 #[must_use]
 pub fn campaign(rig: &Model, random: &mut Pcg64) -> Campaign {
-    let instruments = Instruments::good();
     let manoeuvres = runs(Plan::Lab, random);
+    logged(rig, &manoeuvres, SAMPLE_RATE_HZ, random)
+}
+
+/// `count` runs of that plan, spread evenly over it and repeated as needed, logged at a rate, Hz.
+#[must_use]
+pub fn campaign_of(rig: &Model, count: usize, rate_hz: f64, random: &mut Pcg64) -> Campaign {
+    let plan = runs(Plan::Lab, random);
+    let stride = plan.len().div_ceil(count.max(1));
+    let repeated = plan.iter().step_by(stride).chain(plan.iter().cycle());
+    let manoeuvres: Vec<Manoeuvre> = repeated.take(count).cloned().collect();
+    logged(rig, &manoeuvres, rate_hz, random)
+}
+
+fn logged(rig: &Model, manoeuvres: &[Manoeuvre], rate_hz: f64, random: &mut Pcg64) -> Campaign {
+    let instruments = Instruments::good();
     let noise = Some(instruments.current_sigma_a);
     Campaign {
         name: "simulated".to_owned(),
         description: String::new(),
-        sample_rate_hz: SAMPLE_RATE_HZ,
+        sample_rate_hz: rate_hz,
         synchronous: false,
         noise: Noise {
             lift_current_a: noise,
@@ -37,15 +51,21 @@ pub fn campaign(rig: &Model, random: &mut Pcg64) -> Campaign {
         },
         runs: manoeuvres
             .iter()
-            .map(|manoeuvre| log(rig, manoeuvre, &instruments, random))
+            .map(|manoeuvre| log(rig, manoeuvre, rate_hz, &instruments, random))
             .collect(),
     }
 }
 
-fn log(rig: &Model, manoeuvre: &Manoeuvre, instruments: &Instruments, random: &mut Pcg64) -> Run {
-    let samples = (manoeuvre.duration_s * SAMPLE_RATE_HZ).round() as usize;
+fn log(
+    rig: &Model,
+    manoeuvre: &Manoeuvre,
+    rate_hz: f64,
+    instruments: &Instruments,
+    random: &mut Pcg64,
+) -> Run {
+    let samples = (manoeuvre.duration_s * rate_hz).round() as usize;
     let fine_s: Vec<f64> = (0..=samples * FINER)
-        .map(|step| step as f64 / (SAMPLE_RATE_HZ * FINER as f64))
+        .map(|step| step as f64 / (rate_hz * FINER as f64))
         .collect();
     let currents: Vec<Currents> = fine_s
         .iter()
