@@ -72,7 +72,11 @@ struct Taken {
 /// Formulas of the terms: courses over the piston's travel, which is about 0.2 m.
 fn formula(number: usize) -> String {
     let waves = 1 + number / 2;
-    let way = if number.is_multiple_of(2) { "sin" } else { "cos" };
+    let way = if number.is_multiple_of(2) {
+        "sin"
+    } else {
+        "cos"
+    };
     format!("c * {way}({waves} * x / 50[mm])")
 }
 
