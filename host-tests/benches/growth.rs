@@ -43,7 +43,7 @@ struct Arguments {
     #[arg(long, value_delimiter = ',', default_value = "50,100,200,500,1000")]
     rates: Vec<f64>,
     /// Numbers of candidate effects, at the first number of runs and rate
-    #[arg(long, value_delimiter = ',', default_value = "50,25,75,100")]
+    #[arg(long, value_delimiter = ',', default_value = "50,75,100")]
     candidates: Vec<usize>,
     /// Only the case of the first of each, in this process: its time, s, and peak memory, MB
     #[arg(long)]
