@@ -72,7 +72,7 @@ fn row_start(text: &str, byte: usize) -> usize {
 impl HeaderCell {
     /// Splits a name from a unit in brackets behind it.
     pub fn new(text: &str) -> Self {
-        let text = text.trim();
+        let text = text.trim().trim_start_matches('#').trim_start();
         let (name, unit) = match in_brackets(text) {
             Some((name, unit)) => (name, Some(unit.to_owned())),
             None => (text, None),
@@ -149,12 +149,14 @@ impl Header {
                 .iter()
                 .position(|(_, row)| row.len() >= width && is_sample(row))?;
             let above = rows[..first].iter().rev();
-            let possible = above.filter(|(_, row)| {
-                let is_remark = row.iter().next().is_some_and(|cell| cell.starts_with('#'));
-                row.len() >= 2 && !is_units(row) && row.len() + 1 >= width && !is_remark
-            });
-            // Rows of units, comments and settings may be between them; of equal rows the uppermost has the names.
-            let (byte, header) = possible.max_by_key(|(_, row)| names_in(row))?;
+            let possible =
+                above.filter(|(_, row)| row.len() >= 2 && !is_units(row) && row.len() + 1 >= width);
+            // Rows of units, comments and settings may be between them; of equal rows the uppermost has the names. A comment
+            // is the header only if no other row is.
+            let is_remark =
+                |row: &StringRecord| row.get(0).is_some_and(|cell| cell.starts_with('#'));
+            let (byte, header) =
+                possible.max_by_key(|(_, row)| (!is_remark(row), names_in(row)))?;
             Some(Self::at(text, mark, *byte, header))
         };
         lvm::header(text).or_else(|| MARKS.into_iter().find_map(of_mark))
