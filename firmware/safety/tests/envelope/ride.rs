@@ -117,6 +117,28 @@ fn a_new_claim_does_not_move_the_band() {
 }
 
 #[test]
+fn the_lever_begins_another_band() {
+    let mut riding = Riding::new();
+    let there = PLACE + RIDE.band.0 + SAFETY.limit_margin.0 + CLEAR;
+    let lever = Some(MilliDegree(there));
+    for step in 0..200 {
+        riding.rig.angle = PLACE + (there - PLACE) * step / 200;
+        riding
+            .rig
+            .step_within(riding.limits, Order::Rest, |inputs| {
+                inputs.ground_speed = Some(MillimetrePerSecond(3_000));
+                inputs.lever = lever;
+            });
+    }
+    for step in 0..400 {
+        riding.step(SLOW_LIFT, there + step % 5 * 10, |inputs| {
+            inputs.lever = lever
+        });
+    }
+    assert_eq!(riding.rig.envelope.tripped(), None);
+}
+
+#[test]
 fn a_move_of_another_kind_begins_another_band() {
     let mut riding = Riding::new();
     let there = PLACE + RIDE.band.0 + SAFETY.limit_margin.0 + CLEAR;
