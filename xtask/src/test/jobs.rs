@@ -23,10 +23,9 @@ const RECORD: &str = "xtask/test-seconds.txt";
 /// Shorter jobs are not recorded, s.
 const SHORTEST_S: f64 = 1.0;
 
-/// The program with tests in real time: they mostly wait, and run beside the others.
+/// The program with tests in real time: they mostly wait, and run one after the other beside the others. Two at a time, with a
+/// browser among them, leave the ECU behind real time on two processors.
 const WAITING: &str = "live";
-/// How many of them run at a time. One would take longer than all that compute.
-const WAITING_LANES: usize = 2;
 /// Modules of that program that compute all the time.
 const COMPUTING: [&str; 3] = ["board_bench", "emulated", "emulated_ecu"];
 /// Modules of that program that measure times of the page, and run alone.
@@ -37,7 +36,7 @@ const ALONE: [&str; 2] = ["overlay_in_browser", "page_in_browser"];
 enum Lane {
     /// One on each processor.
     Computing,
-    /// [`WAITING_LANES`] at a time beside those.
+    /// One at a time beside those.
     Waiting,
     /// One at a time after all others.
     Alone,
@@ -98,7 +97,7 @@ pub fn run(built: &Built, only: &str, variables: &[(&str, PathBuf)]) -> Result<V
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let (computing, waiting): (Vec<&Job>, Vec<&Job>) = (of(Lane::Computing), of(Lane::Waiting));
     let (computed, waited) = thread::scope(|scope| {
-        let waited = scope.spawn(|| in_lanes(&waiting, WAITING_LANES, variables));
+        let waited = scope.spawn(|| in_lanes(&waiting, 1, variables));
         let computed = in_lanes(&computing, processors, variables);
         (computed, waited.join().expect("no lane panics"))
     });

@@ -151,10 +151,8 @@ impl Header {
             let above = rows[..first].iter().rev();
             let possible =
                 above.filter(|(_, row)| row.len() >= 2 && !is_units(row) && row.len() + 1 >= width);
-            // Rows of units, comments and settings may be between them; of equal rows the uppermost has the names. A comment
-            // is the header only if no other row is.
-            let is_remark =
-                |row: &StringRecord| row.get(0).is_some_and(|cell| cell.starts_with('#'));
+            // Of equal rows the uppermost has the names; a comment has them only if no other row has.
+            let is_remark = |row: &StringRecord| row.get(0).is_some_and(|c| c.starts_with('#'));
             let (byte, header) =
                 possible.max_by_key(|(_, row)| (!is_remark(row), names_in(row)))?;
             Some(Self::at(text, mark, *byte, header))
