@@ -1,8 +1,9 @@
 //! Bounded Levenberg-Marquardt over the corrections of the constants, the clock offsets and each run's load error.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use crate::base::normal::{BaseProblem, Normal, Point};
+use crate::estimation::jacobian::hold;
 use crate::residuals::whitening::Weights;
 
 /// Number of damping values tried for one step, the first of a descent, and the factor from one to the next.
@@ -82,12 +83,4 @@ fn step(
     let taken = problem.unknowns(&moved) - present;
     let estimate = normal.with_loads(&moved.estimate, &taken, damping);
     Some(problem.point(weights, moved.theta, estimate))
-}
-
-/// Removes an unknown from the normal equations: its step is zero.
-fn hold(matrix: &mut DMatrix<f64>, right: &mut DVector<f64>, unknown: usize) {
-    matrix.row_mut(unknown).fill(0.0);
-    matrix.column_mut(unknown).fill(0.0);
-    matrix[(unknown, unknown)] = 1.0;
-    right[unknown] = 0.0;
 }

@@ -32,9 +32,7 @@ impl Tolerances {
     /// # Errors
     /// A fit does not move it.
     pub fn hold(&mut self, name: &str, constants: &Constants) -> Result<(), String> {
-        if !names(constants).iter().any(|known| known == name) {
-            return Err(unknown(name, constants));
-        }
+        named(name, constants)?;
         self.set(name, 0.0);
         Ok(())
     }
@@ -55,9 +53,7 @@ impl Tolerances {
         [low, high]: [f64; 2],
         model: &Model,
     ) -> Result<Model, String> {
-        let all = parameters(model.constants());
-        let named = all.iter().find(|one| one.name().as_deref() == Some(name));
-        let &parameter = named.ok_or_else(|| unknown(name, model.constants()))?;
+        let parameter = named(name, model.constants())?;
         if !(low > 0.0 && high > low && high.is_finite()) {
             return Err(format!(
                 "{name}: {low} to {high} are not two rising values above zero"
@@ -82,10 +78,8 @@ impl Tolerances {
     /// # Errors
     /// The constant is not known, or has no unit in which a tolerance could be given.
     pub fn sigma_of(name: &str, value: Own, constants: &Constants) -> Result<f64, String> {
-        let all = parameters(constants);
-        let named = all.iter().find(|one| one.name().as_deref() == Some(name));
-        let parameter = named.ok_or_else(|| unknown(name, constants))?;
-        match (parameter, value, declared(parameter, constants)) {
+        let parameter = named(name, constants)?;
+        match (parameter, value, declared(&parameter, constants)) {
             (Parameter::Threshold(_), Own::Value(ampere), _) => Ok(ampere),
             (Parameter::Threshold(_), Own::Share(share), Some(declared)) => Ok(share * declared),
             (_, Own::Share(share), _) => Ok(share),
@@ -128,6 +122,13 @@ pub fn names(constants: &Constants) -> Vec<String> {
         known.extend(parameter.name().filter(|name| !known.contains(name)));
     }
     known
+}
+
+/// The first unknown of a name.
+fn named(name: &str, constants: &Constants) -> Result<Parameter, String> {
+    let mut all = parameters(constants).into_iter();
+    let found = all.find(|one| one.name().as_deref() == Some(name));
+    found.ok_or_else(|| unknown(name, constants))
 }
 
 fn unknown(name: &str, constants: &Constants) -> String {
