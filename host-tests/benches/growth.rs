@@ -27,7 +27,7 @@ use host_tests::simulated_lab::campaign_of;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-/// What everything is drawn from.
+/// Seed of all campaigns.
 const SEED: u64 = 1;
 
 /// How do time and memory of `explain` grow?

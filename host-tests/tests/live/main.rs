@@ -2,6 +2,7 @@
 //! images, the emulator and the browser that the ignored ones need.
 
 mod board_bench;
+mod browser;
 mod bus_in_browser;
 mod bus_intruders;
 #[cfg(unix)]

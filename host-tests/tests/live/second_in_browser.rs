@@ -2,19 +2,16 @@
 //!
 //! `cargo xtask test` installs the browser. The pictures of each view are kept in the target folder.
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 
 use host_tests::page_server::PageServer;
-use host_tests::python::{environment, run, scripts};
 use serde_json::json;
 use tempfile::TempDir;
+
+use crate::browser::operate;
 
 #[test]
 #[ignore = "needs Chromium; cargo xtask test installs it and runs this"]
 fn two_models_are_compared() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let python = environment(&scripts().join("browser.txt"), folder).unwrap();
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &[]);
     let session = server.begin();
@@ -25,14 +22,6 @@ fn two_models_are_compared() {
     let saved = server.get(&format!("api/model?session={session}")).body;
     fs::write(&fitted, &saved).unwrap();
     fs::write(&broken, saved.replacen("_mm = ", "_mm = \"oops\" #", 1)).unwrap();
-    let mut command = Command::new(python);
-    command
-        .arg(scripts().join("second_in_browser.py"))
-        .arg(&server.page)
-        .args([&fitted, &broken])
-        .arg("chromium")
-        .arg(folder.join("pictures"))
-        .env("PYTHONPYCACHEPREFIX", folder.join("python-cache"));
-    let said = run(&mut command).unwrap_or_else(|reason| panic!("{reason:#}"));
+    let said = operate("second_in_browser.py", &server.page, &[&fitted, &broken]);
     assert!(said.contains("the comparison went well"), "{said}");
 }
