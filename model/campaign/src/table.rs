@@ -144,7 +144,7 @@ struct SetBack {
 pub struct ClockStep {
     /// The first sample behind it.
     pub sample: usize,
-    /// What it is, with its line.
+    /// The fault, with its line.
     pub said: String,
 }
 

@@ -44,10 +44,11 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/first/back", post(back))
 }
 
+/// A model file for a session.
 #[derive(Debug, Deserialize)]
-struct OfFile {
-    session: String,
-    name: String,
+pub(super) struct OfFile {
+    pub session: String,
+    pub name: String,
 }
 
 async fn file(State(sessions): Known, Query(of): Query<OfFile>, body: Bytes) -> Answer {

@@ -12,7 +12,7 @@ use hitch_plant::Model;
 use serde::Deserialize;
 use serde_json::json;
 
-use super::first::{LARGEST_MODEL, parsed};
+use super::first::{LARGEST_MODEL, OfFile, parsed};
 use super::jobs;
 use super::routes::{Answer, Known, Of, OfCell, Refusal, blocking, find, lock};
 use super::session::Session;
@@ -91,12 +91,6 @@ async fn step(State(sessions): Known, Json(of): Json<OfStep>) -> Answer {
     let gone = || Refusal::conflict("the step no longer exists");
     open.second = Some(Arc::new(second.ok_or_else(gone)?));
     Ok(Json(json!({})))
-}
-
-#[derive(Debug, Deserialize)]
-struct OfFile {
-    session: String,
-    name: String,
 }
 
 /// Starts the evaluation of a model file.

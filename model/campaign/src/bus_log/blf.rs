@@ -121,7 +121,7 @@ struct Object<'b> {
 }
 
 impl<'b> Objects<'b> {
-    /// What there is of a container that the end of the file cuts off.
+    /// The whole part of a container that the end of the file cuts off.
     fn cut_container(&self) -> Option<&'b [u8]> {
         let rest = &self.bytes[self.at..];
         let begin = rest.windows(OBJECT.len()).position(|four| four == OBJECT)?;
