@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
-use hitch_identification::explanation::explain::{explain, fit_base};
+use hitch_identification::explanation::explain::{explain_with, fit_base};
+use hitch_identification::search::subset::{Accuracy, Options};
 use hitch_plant::{Constants, Model};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -44,7 +45,7 @@ pub struct Adopted {
 }
 
 impl Adopted {
-    /// Draws a machine and adopts a model for it with `hitch explain`.
+    /// Draws a machine and adopts a model for it as `hitch adopt` does.
     #[must_use]
     pub fn new(seed: u64, family: Family, plan: Plan) -> Self {
         let foreign = draw_foreign(seed, family, plan);
@@ -52,7 +53,12 @@ impl Adopted {
         let start = Instant::now();
         let first = campaign(&foreign.first);
         let experiment = Experiment::new(&first, &data_sheet);
-        let explanation = explain(Problem::new(&experiment, &data_sheet), &|_| {});
+        let options = Options {
+            constants: Accuracy::DataSheet,
+            ..Options::default()
+        };
+        let problem = Problem::new(&experiment, &data_sheet);
+        let explanation = explain_with(problem, options, &|_| {});
         let seconds = start.elapsed().as_secs_f64();
         Self {
             model: explanation.after.estimate.applied_to(&data_sheet),

@@ -7,6 +7,7 @@ mod coarse_simulation;
 mod convergence;
 mod coverage;
 mod declared_constants;
+mod drawn_campaigns;
 mod estimation;
 mod hidden_effects;
 mod independent_plant;

@@ -22,6 +22,22 @@ fn json(dir: &TempDir, arguments: &[&str]) -> (Value, String) {
     (document, said)
 }
 
+/// The shift of the lowering valve's threshold as a term of one's own.
+const OWN_SHIFT: &str = r#"
+[[term]]
+id = "own-shift"
+place = "lower-current"
+formula = "-c"
+
+[[term.parameter]]
+name = "c"
+unit = "A"
+null = 0
+start = 0.05
+low = -0.5
+high = 0.5
+"#;
+
 #[test]
 fn a_data_sheet_becomes_a_machine_and_a_baseline_shows_what_has_changed() {
     let dir = TempDir::new().unwrap();
@@ -84,7 +100,7 @@ fn a_data_sheet_becomes_a_machine_and_a_baseline_shows_what_has_changed() {
     let named: Vec<&Value> = steps.iter().map(|step| &step["effect"]).collect();
     assert_eq!(named, ["lower-threshold-shift"]);
 
-    // The same question in two other ways has the same answer.
+    // The same question in three other ways has the same answer.
     let of = |parameters: &Value, what: &str| parameters[0][what].as_f64().unwrap();
     let explained = &steps[0]["parameters"];
     let same = |value: f64, how: &str| {
@@ -110,6 +126,18 @@ fn a_data_sheet_becomes_a_machine_and_a_baseline_shows_what_has_changed() {
         .iter()
         .find(|added| added.effect.id() == "lower-threshold-shift");
     same(effect.unwrap().values[0], "added");
+    let machine = fs::read_to_string(dir.path().join("machine.toml")).unwrap();
+    fs::write(dir.path().join("own.toml"), format!("{machine}{OWN_SHIFT}")).unwrap();
+    let beside = ["--model", "own.toml", "--baseline", clean];
+    let add = ["add", "own-shift", "--campaign", worn];
+    let add = [&add[..], &beside, &["--out", "term.toml"]].concat();
+    assert!(run(dir.path(), &add).status.success());
+    let added = hitch_model_file::named(dir.path().join("term.toml").to_str().unwrap()).unwrap();
+    let term = added
+        .effects
+        .iter()
+        .find(|one| one.effect.id() == "own-shift");
+    same(term.unwrap().values[0], "as a term of one's own");
 }
 
 #[test]

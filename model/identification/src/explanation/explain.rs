@@ -20,7 +20,7 @@ use crate::estimation::fit::{Fit, evaluate, fit, refine};
 use crate::explanation::constants::{CorrectedConstants, Searched, search_with_constants};
 use crate::explanation::undetected::{Undetected, undetected};
 use crate::search::candidates::Progress;
-use crate::search::subset::{Found, Options};
+use crate::search::subset::{Accuracy, Found, Options};
 use crate::selection::candidate::{Candidate, weigh};
 use crate::selection::evidence::DISTINGUISHABLE;
 use crate::selection::hold_out::{HeldOut, held_out};
@@ -128,6 +128,32 @@ pub struct Explanation {
     pub unfinished: bool,
 }
 
+/// Whether an effect has to be the named one in order to stay.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Names {
+    /// It has to: an explanation states causes.
+    Right,
+    /// Something that acts like it has to be there: a model that is adopted predicts.
+    Near,
+}
+
+impl Names {
+    fn of(constants: Accuracy) -> Self {
+        match constants {
+            Accuracy::DataSheet => Self::Near,
+            _ => Self::Right,
+        }
+    }
+
+    /// Probability that an effect which acts as found counts as present.
+    fn weight(self, candidate: &Candidate) -> f64 {
+        match self {
+            Self::Right => candidate.plausibility(),
+            Self::Near => 1.0,
+        }
+    }
+}
+
 /// The effects that a search found.
 struct Members {
     steps: Vec<ExplanationStep>,
@@ -177,7 +203,8 @@ pub fn explain_with(problem: Problem<'_>, options: Options<'_>, progress: Progre
         false => Searched::declared(Found::nothing(&before)),
     };
     progress("how sure that is");
-    let mut steps = steps(problem, &before, &searched);
+    let names = Names::of(options.constants);
+    let mut steps = steps(problem, &before, &searched, names);
     let mut doubtful = Vec::new();
     loop {
         let fewer = steps.iter().rev().skip(1).map(|step| step.fit.clone());
@@ -193,7 +220,7 @@ pub fn explain_with(problem: Problem<'_>, options: Options<'_>, progress: Progre
         } else if !searched.found.moves_to_fewer(problem, fewer.collect()) {
             break;
         }
-        steps = self::steps(problem, &before, &searched);
+        steps = self::steps(problem, &before, &searched, names);
     }
     let members = Members { steps, doubtful };
     concluded(problem, before, refitted, searched, members)
@@ -218,7 +245,12 @@ fn improbable(steps: &[ExplanationStep]) -> Option<usize> {
 }
 
 /// The members of the set as steps, in greedy order of the cost reduction that each adds.
-fn steps(problem: Problem<'_>, before: &Fit, searched: &Searched) -> Vec<ExplanationStep> {
+fn steps(
+    problem: Problem<'_>,
+    before: &Fit,
+    searched: &Searched,
+    names: Names,
+) -> Vec<ExplanationStep> {
     let found = &searched.found;
     let start = searched.corrected.as_ref().unwrap_or(before);
     let weighed = found.refitted.weighed(problem, &found.fit);
@@ -245,7 +277,7 @@ fn steps(problem: Problem<'_>, before: &Fit, searched: &Searched) -> Vec<Explana
         let indistinguishable = alternatives(problem, &whole, effect, &weighed);
         let ids = indistinguishable.iter().map(|other| other.effect.id());
         let ids: Vec<&str> = ids.chain([id]).collect();
-        let any = probability_of_any(&weighed, &ids) * candidate.plausibility();
+        let any = probability_of_any(&weighed, &ids) * names.weight(&candidate);
         steps.push(ExplanationStep {
             effect: candidate.effect,
             error_before,
