@@ -1,9 +1,10 @@
-//! Line search for the size of a switching effect at the end of a fit.
+//! Line search for the size of an effect without useful slopes at the end of a fit.
 //!
 //! The size of a sticking spool is determined to a few hundredths of a percent or not at all: at a slightly different
 //! size the tenth jump occurs at another time. Slopes are useless there, and the earlier scan over all sizes found the
 //! minimum with a small error, as the clocks still compensated for what was missing. Close to the optimum a fine search
-//! follows. A piecewise constant cost needs a wide search: a descent ends at its first step.
+//! follows. A piecewise constant cost needs a wide search: a descent ends at its first step. A run that ends just above the
+//! ground shows nothing of it: its cost steps where the hitch of the model touches the ground too.
 
 use hitch_plant::{AddedEffect, SizeResponse};
 use rayon::prelude::*;
@@ -12,15 +13,16 @@ use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate_weighted, refine};
 use crate::search::shape_starts::scaled;
 
-/// Distance of the trial sizes to either side, as powers of e, for switching and for stepped effects, and their number.
+/// Distance of the trial sizes to either side, as powers of e, for switching, stepped and located effects, and their number.
 const DISTANCES_SWITCHING: [f64; 2] = [0.005, 0.000_8];
 const DISTANCES_STEPPED: [f64; 2] = [1.0, 0.1];
+const DISTANCES_LOCATED: [f64; 2] = [0.15, 0.015];
 const TO_EITHER_SIDE: i32 = 10;
 
 /// Largest distance of a shape parameter from the upper end of its range, as a share, at which the end is tried too.
 const NEARLY_WHOLE: f64 = 0.01;
 
-/// The better of a fit and of the fits from nearby sizes of an effect, by its index, that is switching or stepped.
+/// The better of a fit and of the fits from nearby sizes of an effect, by its index, unless its cost is smooth over its size.
 pub(crate) fn line_searched(problem: Problem<'_>, fit: Fit, index: usize) -> Fit {
     let added = &fit.estimate.effects[index];
     let reaches = match added.is_null() {
@@ -63,7 +65,8 @@ fn reaches(response: SizeResponse, ringing: bool) -> &'static [f64] {
     match response {
         SizeResponse::Switching => &DISTANCES_SWITCHING,
         SizeResponse::Stepped if ringing => &DISTANCES_STEPPED,
-        SizeResponse::Stepped | SizeResponse::Smooth | SizeResponse::Located => &[],
+        SizeResponse::Located => &DISTANCES_LOCATED,
+        SizeResponse::Stepped | SizeResponse::Smooth => &[],
     }
 }
 

@@ -1,6 +1,5 @@
 //! Fits of promising sets of effects with the full model.
 
-use hitch_plant::SizeResponse;
 use rayon::prelude::*;
 
 use crate::data::clocks::Clocks;
@@ -181,20 +180,21 @@ impl Refits<'_> {
         if far.cost < near.cost { far } else { near }
     }
 
-    /// A fit after the line search for the size of a switching or stepped effect.
+    /// A fit after the line search for the size of each effect without useful slopes.
     fn line_searched(&self, fit: Fit) -> Fit {
-        let estimate = &fit.estimate;
-        let jumps = estimate.changed().find(|&index| {
-            let search = estimate.effects[index].effect.size_response();
-            matches!(search, SizeResponse::Switching | SizeResponse::Stepped)
-        });
-        match jumps {
-            Some(index) => {
-                let problem = self.coarse.problem;
-                line_searched(problem, evaluate(problem, fit.estimate), index)
-            }
-            None => fit,
-        }
+        let rough = |fit: &Fit, index: &usize| {
+            let response = fit.estimate.effects[*index].effect.size_response();
+            response.is_rough()
+        };
+        let indices: Vec<usize> = fit
+            .estimate
+            .changed()
+            .filter(|index| rough(&fit, index))
+            .collect();
+        let problem = self.coarse.problem;
+        indices.into_iter().fold(fit, |fit, index| {
+            line_searched(problem, evaluate(problem, fit.estimate), index)
+        })
     }
 }
 
