@@ -18,6 +18,7 @@ use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, largest_current_a, surv
 
 pub mod carried;
 mod dynamics;
+mod holding;
 
 /// Tolerance of a valve table relative to the surveyed curve, A.
 const TOLERANCE_A: f64 = 0.5e-3;
@@ -102,7 +103,11 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     if let Some(lag_s) = found(model, "angle-sensor-lag") {
         calibration.sensors.angle_lag = Millisecond((lag_s * 1e3).round() as i32);
     }
+    if let Some(offset_bar) = found(model, "pressure-sensor-offset") {
+        calibration.sensors.pressure_offset = MilliBar((offset_bar * 1e3).round() as i32);
+    }
     dynamics::adapt(model, &mut calibration);
+    holding::adapt(model, &mut calibration);
     calibration
         .sealed()
         .validate()
@@ -191,18 +196,20 @@ pub fn controller_for(model: &Model) -> Result<Controller, CalibrateError> {
     calibrate(model, &Calibration::nominal()).map(Controller::new)
 }
 
-/// The linkage table over the model's range, and the travel limits inside it.
+/// The linkage table over the model's range, and the travel limits inside it. The angles are those that the sensor shows
+/// of a hitch at rest.
 fn linkage(model: &Model, calibration: &mut Calibration) {
     let (low_rad, high_rad) = model.linkage().swing_rad();
-    let milli = |degree: f64| MilliDegree((degree * 1e3).round() as i32);
-    let (low, high) = (milli(low_rad.to_degrees()), milli(high_rad.to_degrees()));
+    let shown = 1.0 + found(model, "angle-sensor-gain").unwrap_or(0.0);
+    let milli = |angle_rad: f64| MilliDegree((shown * angle_rad.to_degrees() * 1e3).round() as i32);
+    let (low, high) = (milli(low_rad), milli(high_rad));
     let pieces = LINKAGE_POINTS as i32 - 1;
     // Rounded up, so that the table covers the whole range.
     let step = MilliDegree(((high - low).0 + pieces - 1) / pieces);
     let table = &mut calibration.linkage;
     (table.first_angle, table.angle_step) = (low, step);
     for (index, travel) in (0..).zip(&mut table.travel) {
-        let angle_deg = f64::from(low.0 + index * step.0) * 1e-3;
+        let angle_deg = f64::from(low.0 + index * step.0) * 1e-3 / shown;
         let piston_m = model.linkage().piston_m(angle_deg.to_radians());
         *travel = Micrometre((piston_m * 1e6).round() as i32);
     }

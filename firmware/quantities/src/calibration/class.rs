@@ -102,6 +102,9 @@ pub const CLASSES: &[Classified] = &[
     row("sensors", DOWN, &[
         "angle_max", "angle_jump", "lever_max", "pressure_max", "bridged", "angle_lag",
     ]),
+    row("sensors", Class::Machine, &[
+        "pressure_offset",
+    ]),
     row("lock", UP, &[
         "lever_movement", "healthy_time", "engine_running", "engine_settling", "engine_required",
     ]),
