@@ -93,7 +93,7 @@ const KEY_ONLY: Class = Class::Safety(Tightening::None);
 #[rustfmt::skip]
 pub const CLASSES: &[Classified] = &[
     row("hydraulics", Class::Machine, &[
-        "piston_area", "spool_lag", "lower_spool_lag", "compensator_lag", "hysteresis", "reference_drop",
+        "piston_area", "load_ratio", "spool_lag", "lower_spool_lag", "compensator_lag", "hysteresis", "reference_drop",
         "assumed_drop", "smallest_drop", "largest_drop", "pressure_filter", "drop_learning", "relief_pressure", "relief_margin",
     ]),
     row("sensors", UP, &[

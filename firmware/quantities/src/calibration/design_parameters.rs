@@ -16,6 +16,8 @@ parameter_group! {
     HydraulicParameters, "hydraulics" {
         /// Piston area: turns piston speed into flow. 76 mm bore.
         piston_area: SquareMillimetre = 4537, 500..=50_000;
+        /// Travel of the load for each travel of the piston, the mean over the stroke: gravity accelerates a sinking piston with as many times less.
+        load_ratio: PerMille = 4_300, 500..=30_000;
         /// Time constant of the lift valve's solenoid and spool: what flows on after the coil has been told to stop.
         spool_lag: Millisecond = 40, 0..=500;
         /// The same of the lowering valve: of one kind, but by 10 ms and more another unit.
