@@ -52,6 +52,9 @@ pub struct PositionControl {
     started: bool,
     /// The present move corrects a move that has missed its set point.
     is_correction: bool,
+    /// How far corrections to this set point go beyond their predicted stop, and the direction of the last one.
+    beyond: Micrometre,
+    corrected: Option<Direction>,
     /// Duration of the final approach of the present move.
     approach_time: Millisecond,
     /// The present position counts as the set point until the lever moves (end stop).
@@ -144,6 +147,28 @@ impl PositionControl {
         Some(self.reason())
     }
 
+    /// A correction starts in this direction, from a hitch at rest `away` from the set point. If the last one was in the
+    /// other direction, it has gone too far. The observer has not seen why: the correction is a hundred milliseconds long,
+    /// and its valve opens by a threshold that it does not know. The next one therefore ends earlier by as much. Without
+    /// this a hitch moves back and forth about its set point until its corrections are spent.
+    pub fn begin_correction(
+        &mut self,
+        direction: Direction,
+        away: Micrometre,
+        parameters: &PositionParameters,
+    ) {
+        let away = away.magnitude();
+        self.beyond = match self.corrected {
+            Some(last) if last != direction => {
+                let limit = self.bands(parameters).restart_band - parameters.stop_band;
+                (self.beyond + away).min(limit.max(Micrometre::ZERO))
+            }
+            Some(_) => (self.beyond - away).max(Micrometre::ZERO),
+            None => Micrometre::ZERO,
+        };
+        self.corrected = Some(direction);
+    }
+
     /// A move starts; the reason for it.
     pub fn start(&mut self) -> MoveReason {
         let reason = self.reason();
@@ -196,6 +221,7 @@ impl PositionControl {
         };
         let ahead_of = |point: Micrometre| Micrometre(direction.sign((target - point).0));
         let stop_prediction: StopPrediction = motion.stop_prediction(&calibration.hydraulics);
+        let ahead_of = |point: Micrometre| ahead_of(point) - self.beyond;
         let remaining = ahead_of(stop_prediction.predicted_stop());
         // The stopping distance after a cut is shorter than that of a ramp, so the ramp is checked first.
         let band = stop_band::after(self.approach_time, parameters);
@@ -331,6 +357,30 @@ mod tests {
         assert_eq!(moved(MoveReason::SetPoint, false), fast);
         assert_eq!(moved(MoveReason::Drift, true), creep, "ended elsewhere");
         assert_eq!(moved(MoveReason::Drift, false), fast, "left its place");
+    }
+
+    #[test]
+    fn a_correction_that_went_too_far_makes_the_next_one_end_earlier() {
+        let parameters = PositionParameters::NOMINAL;
+        let mut position = PositionControl::default();
+        let mut beyond = |direction, away| {
+            position.begin_correction(direction, Micrometre(away), &parameters);
+            position.beyond.0
+        };
+        let most = (parameters.restart_band - parameters.stop_band).0;
+        assert_eq!(beyond(Direction::Lift, 700), 0, "nothing known");
+        assert_eq!(beyond(Direction::Lift, 700), 0, "a leak goes on");
+        assert_eq!(beyond(Direction::Lower, -300), 300, "too far");
+        assert_eq!(beyond(Direction::Lower, -200), 100, "not far enough");
+        // A hitch that has to be corrected has more left than the stop band.
+        assert_eq!(beyond(Direction::Lift, 5_000), most);
+        position.follow(
+            parameters.lower_limit,
+            parameters.upper_limit,
+            false,
+            &parameters,
+        );
+        assert_eq!(position.beyond, Micrometre::ZERO, "another set point");
     }
 
     #[test]
