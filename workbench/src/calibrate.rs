@@ -6,11 +6,11 @@ use hitch_controller::Controller;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
 use hitch_plant::{AddedEffect, Constants, Dynamics, Model, OrificeValve, Solenoid, Valve};
 use hitch_quantities::calibration::design_parameters::CurrentParameters;
-use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
+use hitch_quantities::calibration::linkage::{LINKAGE_POINTS, LinkageTable};
 use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
 use hitch_quantities::units::{
     AmperePerSecond, MicroLitrePerSecond, Micrometre, MilliAmp, MilliBar, MilliDegree, MilliOhm,
-    MilliOhmPerSecond, Millisecond, SquareMillimetre,
+    MilliOhmPerSecond, Millisecond, PerMille, SquareMillimetre,
 };
 use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
@@ -18,6 +18,7 @@ use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, largest_current_a, surv
 
 pub mod carried;
 mod dynamics;
+mod holding;
 
 /// Tolerance of a valve table relative to the surveyed curve, A.
 const TOLERANCE_A: f64 = 0.5e-3;
@@ -102,7 +103,11 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     if let Some(lag_s) = found(model, "angle-sensor-lag") {
         calibration.sensors.angle_lag = Millisecond((lag_s * 1e3).round() as i32);
     }
+    if let Some(offset_bar) = found(model, "pressure-sensor-offset") {
+        calibration.sensors.pressure_offset = MilliBar((offset_bar * 1e3).round() as i32);
+    }
     dynamics::adapt(model, &mut calibration);
+    holding::adapt(model, &mut calibration);
     calibration
         .sealed()
         .validate()
@@ -191,22 +196,30 @@ pub fn controller_for(model: &Model) -> Result<Controller, CalibrateError> {
     calibrate(model, &Calibration::nominal()).map(Controller::new)
 }
 
-/// The linkage table over the model's range, and the travel limits inside it.
+/// The linkage table over the model's range, and the travel limits inside it. The angles are those that the sensor shows
+/// of a hitch at rest.
 fn linkage(model: &Model, calibration: &mut Calibration) {
     let (low_rad, high_rad) = model.linkage().swing_rad();
-    let milli = |degree: f64| MilliDegree((degree * 1e3).round() as i32);
-    let (low, high) = (milli(low_rad.to_degrees()), milli(high_rad.to_degrees()));
+    let shown = 1.0 + found(model, "angle-sensor-gain").unwrap_or(0.0);
+    let milli = |angle_rad: f64| MilliDegree((shown * angle_rad.to_degrees() * 1e3).round() as i32);
+    let (low, high) = (milli(low_rad), milli(high_rad));
     let pieces = LINKAGE_POINTS as i32 - 1;
+    let before_um_mdeg = travel_for_angle(&calibration.linkage);
     // Rounded up, so that the table covers the whole range.
     let step = MilliDegree(((high - low).0 + pieces - 1) / pieces);
     let table = &mut calibration.linkage;
     (table.first_angle, table.angle_step) = (low, step);
     for (index, travel) in (0..).zip(&mut table.travel) {
-        let angle_deg = f64::from(low.0 + index * step.0) * 1e-3;
+        let angle_deg = f64::from(low.0 + index * step.0) * 1e-3 / shown;
         let piston_m = model.linkage().piston_m(angle_deg.to_radians());
         *travel = Micrometre((piston_m * 1e6).round() as i32);
     }
+    let stretch = travel_for_angle(&calibration.linkage) / before_um_mdeg;
     let position = &mut calibration.position;
+    // Angles of the hitch, as distances of the piston.
+    for band in [&mut position.stop_band, &mut position.restart_band] {
+        *band = Micrometre((stretch * f64::from(band.0)).round() as i32);
+    }
     let before = [position.lower_limit, position.upper_limit];
     // The same end keeps its limit: one that is wider by a rounding needs the key of the machine.
     let lower_limit = before[0] + moved_by(before[0], low + END_DISTANCE);
@@ -215,6 +228,22 @@ fn linkage(model: &Model, calibration: &mut Calibration) {
     follow(calibration, before, [lower_limit, upper_limit]);
     let stroke_m = model.constants().cylinder.stroke_m;
     calibration.teach.stroke = Micrometre((stroke_m * 1e6).round() as i32);
+    calibration.hydraulics.load_ratio = load_ratio(model, stroke_m);
+}
+
+/// Mean travel for each angle of a table, um/mdeg.
+fn travel_for_angle(table: &LinkageTable) -> f64 {
+    let [first, .., last] = table.travel;
+    let pieces = LINKAGE_POINTS as f64 - 1.0;
+    f64::from((last - first).0) / (pieces * f64::from(table.angle_step.0))
+}
+
+/// Mean of the load's travel over that of the piston.
+fn load_ratio(model: &Model, stroke_m: f64) -> PerMille {
+    const PLACES: u32 = 32;
+    let places = (0..PLACES).map(|place| (f64::from(place) + 0.5) / f64::from(PLACES) * stroke_m);
+    let sum: f64 = places.map(|place_m| model.linkage().dh_dx(place_m)).sum();
+    PerMille((1e3 * sum / f64::from(PLACES)).round() as i32)
 }
 
 /// Displacement of a travel limit.
@@ -356,6 +385,13 @@ mod tests {
         assert_eq!(same.operator, nominal.operator);
         assert_eq!(same.sensors, nominal.sensors);
         assert_eq!(same.teach, nominal.teach);
+        let bands = |calibration: &Calibration| {
+            let position = &calibration.position;
+            [position.stop_band, position.restart_band]
+        };
+        assert_eq!(bands(&same), bands(&nominal));
+        let ratio = f64::from(same.hydraulics.load_ratio.0);
+        assert!((ratio / 4_300.0 - 1.0).abs() < 0.02, "{ratio}");
         let distances = |calibration: &Calibration| {
             let (position, sensors) = (&calibration.position, &calibration.sensors);
             [

@@ -127,7 +127,8 @@ impl<'a> Session<'a> {
         self.controller.taught()
     }
 
-    /// The inputs of a line of `hitch controller`: no measured currents, and only available sensors.
+    /// The inputs of a line of `hitch controller`: no measured currents, and only available sensors. The lever's scale is
+    /// that of the angle sensor.
     fn inputs(&mut self, lever_deg: f64) -> Inputs {
         let milli = |value: f64| (value * 1e3).round() as i32;
         let mut noise = || -> f64 { StandardNormal.sample(&mut self.random) };
@@ -140,7 +141,7 @@ impl<'a> Session<'a> {
             .map(|bar| MilliBar(milli(bar + PRESSURE_NOISE_BAR * noise())));
         let pressure = |bar: MilliBar| self.readings.pressures.then_some(bar);
         Inputs {
-            lever: Some(MilliDegree(milli(lever_deg))),
+            lever: Some(MilliDegree(milli(self.hitch.shown_at_rest_deg(lever_deg)))),
             rocker_angle: Some(MilliDegree(milli(angle_deg))),
             // Only looked at with `sensors.second_track`.
             second_angle: Some(MilliDegree(milli(self.hitch.shown_deg()))),

@@ -56,9 +56,14 @@ impl<'a> AngleSensor<'a> {
     /// Its reading, degree.
     #[must_use]
     pub fn shown_deg(&self) -> f64 {
+        self.shown_at_rest_deg(self.lagging_deg)
+    }
+
+    /// Its reading of a hitch that rests at an angle, degree.
+    #[must_use]
+    pub fn shown_at_rest_deg(&self, angle_deg: f64) -> f64 {
         let sensors = self.sensors;
         let (cam_deg, phase) = sensors.cam;
-        let angle_deg = self.lagging_deg;
         angle_deg
             + sensors.angle_gain * (angle_deg - sensors.angle_pivot_deg)
             + cam_deg * ((4.0 * angle_deg).to_radians() + phase).sin()

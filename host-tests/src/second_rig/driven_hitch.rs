@@ -86,6 +86,12 @@ impl<'a> DrivenHitch<'a> {
         self.sensor.shown_deg()
     }
 
+    /// What the sensor shows of a hitch that rests at an angle, without noise, degree.
+    #[must_use]
+    pub fn shown_at_rest_deg(&self, rocker_deg: f64) -> f64 {
+        self.sensor.shown_at_rest_deg(rocker_deg)
+    }
+
     /// Cylinder pressure as it is, bar.
     #[must_use]
     pub fn cylinder_bar(&self) -> f64 {

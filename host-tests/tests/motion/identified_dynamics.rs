@@ -26,6 +26,8 @@ struct Case {
     on_rig: fn(&mut Physics),
     /// Limit of the median time ratio.
     median: f64,
+    /// Limit of the overshoot, degree.
+    overshoot_deg: f64,
 }
 
 /// Figures of a move.
@@ -36,9 +38,12 @@ struct Figures {
     fault: Option<Fault>,
 }
 
-/// The limit of the 95 % quantile of the time ratio, and of the overshoot, degree.
+/// The limit of the 95 % quantile of the time ratio.
 const HIGH: f64 = 1.95;
+/// The usual limit of the overshoot, degree.
 const OVERSHOOT_DEG: f64 = 0.3;
+/// The same with a leak: after a lowering it sinks on to the restart band, 0.35 degree, until it is corrected.
+const SUNK_DEG: f64 = 0.45;
 
 const SENSOR: (&str, Option<&str>, &[f64]) = ("angle-sensor-lag", None, &[0.19]);
 
@@ -47,26 +52,31 @@ const CASES: &[Case] = &[
         effects: &[("spool-lag", None, &[0.15, 0.0])],
         on_rig: |rig| rig.spool = SpoolMotion::Lagging(0.15),
         median: 1.6,
+        overshoot_deg: OVERSHOOT_DEG,
     },
     Case {
         effects: &[("entrained-air", None, &[0.08, 1.2])],
         on_rig: |rig| (rig.air_ratio, rig.air_exponent) = (0.08 / 0.92, 1.2),
         median: 1.45,
+        overshoot_deg: OVERSHOOT_DEG,
     },
     Case {
         effects: &[SENSOR],
         on_rig: |rig| rig.sensors.angle_lag_s = 0.19,
         median: 1.35,
+        overshoot_deg: OVERSHOOT_DEG,
     },
     Case {
         effects: &[("compensator-droop", Some("lagging"), &[0.003, 0.0, 0.0])],
         on_rig: |rig| rig.compensator_lag_s = 0.003,
         median: 1.35,
+        overshoot_deg: OVERSHOOT_DEG,
     },
     Case {
         effects: &[("compensator-droop", Some("lagging"), &[0.012, 0.0, 0.0])],
         on_rig: |rig| rig.compensator_lag_s = 0.012,
         median: 1.4,
+        overshoot_deg: OVERSHOOT_DEG,
     },
     Case {
         effects: &[
@@ -75,8 +85,48 @@ const CASES: &[Case] = &[
         ],
         on_rig: |rig| (rig.sensors.angle_lag_s, rig.compensator_lag_s) = (0.19, 0.003),
         median: 1.4,
+        overshoot_deg: OVERSHOOT_DEG,
     },
 ];
+
+/// Effects that are no dynamics: on the second rig alone. The angles of the model's plant are not those of its sensor.
+const STEADY_CASES: &[Case] = &[
+    Case {
+        effects: &[("angle-sensor-gain", None, &[0.03])],
+        on_rig: |rig| rig.sensors.angle_gain = 0.03,
+        median: 1.35,
+        overshoot_deg: OVERSHOOT_DEG,
+    },
+    Case {
+        effects: &[("pressure-sensor-offset", None, &[8.0])],
+        on_rig: |rig| rig.sensors.pressure_offset_pa = 8e5,
+        median: 1.35,
+        overshoot_deg: OVERSHOOT_DEG,
+    },
+    Case {
+        effects: &[("pressure-sensor-offset", None, &[-8.0])],
+        on_rig: |rig| rig.sensors.pressure_offset_pa = -8e5,
+        median: 1.35,
+        overshoot_deg: OVERSHOOT_DEG,
+    },
+    Case {
+        effects: &[("lowering-leakage", None, &[0.001])],
+        on_rig: |rig| rig.leakage_m3_s_pa = leakage_m3_s_pa(0.001),
+        median: 1.35,
+        overshoot_deg: SUNK_DEG,
+    },
+    Case {
+        effects: &[("lowering-leakage", None, &[0.002])],
+        on_rig: |rig| rig.leakage_m3_s_pa = leakage_m3_s_pa(0.002),
+        median: 1.35,
+        overshoot_deg: SUNK_DEG,
+    },
+];
+
+/// A leakage of so many l/min for each bar.
+fn leakage_m3_s_pa(lpm_bar: f64) -> f64 {
+    lpm_bar * 1e-3 / 60.0 / 1e5
+}
 
 impl Case {
     fn effects(&self) -> Vec<AddedEffect> {
@@ -204,9 +254,40 @@ fn a_machine_that_is_calibrated_from_its_model_moves_well_with_each_dynamic_effe
             let [median, high, _] = quantiles(&moves, |moved| moved.ratio);
             let [.., overshoot_deg] = quantiles(&moves, |moved| moved.overshoot_deg);
             let faults = moves.iter().any(|moved| moved.fault.is_some());
-            if median > case.median || high > HIGH || overshoot_deg > OVERSHOOT_DEG || faults {
+            if median > case.median || high > HIGH || overshoot_deg > case.overshoot_deg || faults {
                 missed.push(line);
             }
+        }
+    }
+    assert!(missed.is_empty(), "{missed:#?}");
+}
+
+// REQ-MOTION-01
+#[test]
+fn a_machine_that_is_calibrated_from_its_model_moves_well_with_each_steady_error_of_a_sensor_or_leak()
+ {
+    let mut missed = Vec::new();
+    let without = calibrate(&hitch_model_file::dynamic(), &Calibration::nominal()).unwrap();
+    for case in STEADY_CASES {
+        let model = hitch_model_file::dynamic().with_effects(case.effects());
+        let calibration = calibrate(&model, &Calibration::nominal()).unwrap();
+        let mut physics = Physics::default();
+        (case.on_rig)(&mut physics);
+        println!(
+            "{}",
+            line(
+                &format!("{} not carried", case.title()),
+                &on_rig(&physics, &without)
+            )
+        );
+        let moves = on_rig(&physics, &calibration);
+        let line = line(&case.title(), &moves);
+        println!("{line}");
+        let [median, high, _] = quantiles(&moves, |moved| moved.ratio);
+        let [.., overshoot_deg] = quantiles(&moves, |moved| moved.overshoot_deg);
+        let faults = moves.iter().any(|moved| moved.fault.is_some());
+        if median > case.median || high > HIGH || overshoot_deg > case.overshoot_deg || faults {
+            missed.push(line);
         }
     }
     assert!(missed.is_empty(), "{missed:#?}");

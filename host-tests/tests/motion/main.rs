@@ -10,6 +10,7 @@ mod flooded_bus;
 mod from_measurement_to_motion;
 mod frozen_angle;
 mod identified_dynamics;
+mod other_linkage;
 mod position;
 mod power_cut;
 mod rate;

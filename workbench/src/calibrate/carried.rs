@@ -49,9 +49,11 @@ const DESTINATIONS: &[Destination] = &[
         "position.swinging_deceleration"], "its change with the load, which the observer corrects"),
     to(&["entrained-air", "bulk-modulus", "hose-compliance", "load-inertia"], OIL_SWING, "the share of each: all set the one lowest frequency"),
     to(&["angle-sensor-lag"], &["sensors.angle_lag"], "a dead time, where the model has one"),
-    to(&["angle-sensor-gain"], &[], "no value for it; scale the signal in the converter"),
-    to(&["pressure-sensor-offset"], &[], "no value for it; the observer corrects the lowering speed, or correct the sensor"),
-    to(&["lowering-leakage"], &[], "a defect to be repaired: corrections make up for slow sinking, then the drift monitor reports it"),
+    to(&["angle-sensor-gain"], &["linkage", "position.lower_limit", "position.upper_limit"],
+        "the scale of lever and displays: all angles are those that the sensor shows"),
+    to(&["pressure-sensor-offset"], &["sensors.pressure_offset"], ""),
+    to(&["lowering-leakage"], &["hold.correction_memory"],
+        "a leak that needs a correction in less than 1.5 s, or grows by half: the drift monitor reports it, repair the valve"),
     to(&["relief-override"], &[], "the relief pressure is that of the constants"),
     to(&["coulomb-friction", "stribeck-friction", "viscous-friction", "pin-friction", "load-arm"], &[],
         "no value for it; the observer corrects the speed"),
@@ -100,10 +102,14 @@ fn change(path: &str, base: &Calibration, calibration: &Calibration) -> Option<S
     let table = match path {
         "lift" => Some(base.lift != calibration.lift),
         "lower" => Some(base.lower != calibration.lower),
+        "linkage" => Some(base.linkage != calibration.linkage),
         _ => None,
     };
     if let Some(changed) = table {
-        return changed.then(|| format!("{path} curve"));
+        return changed.then(|| match path {
+            "linkage" => "linkage table".to_owned(),
+            _ => format!("{path} curve"),
+        });
     }
     let (before, after) = (scalar(base, path)?, scalar(calibration, path)?);
     (before.value != after.value).then(|| {
@@ -126,7 +132,7 @@ mod tests {
         }
         for destination in DESTINATIONS {
             for path in destination.into {
-                let exists = ["lift", "lower"].contains(path)
+                let exists = ["lift", "lower", "linkage"].contains(path)
                     || scalar(&Calibration::nominal(), path).is_some();
                 assert!(exists, "{path}");
             }

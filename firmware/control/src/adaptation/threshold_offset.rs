@@ -29,9 +29,6 @@ pub const INITIAL_LIFT_OFFSET: MilliAmp = MilliAmp(20);
 const INITIAL_SIGMA: MilliAmp = MilliAmp(70);
 /// Smallest sigma: coil temperature and hysteresis.
 const MIN_SIGMA: MilliAmp = MilliAmp(20);
-/// Sigma of the distance error that does not depend on the distance: averaged sensor, play of pins, closing of the
-/// valve.
-const NOISE: Micrometre = Micrometre(300);
 /// Sigma of the flow error of a lift, in thousandths: the flow is pressure compensated.
 const LIFT_ERROR: i32 = 25;
 /// Sigma of the flow error of a lowering, in thousandths: load, oil and piston friction are not known well.
@@ -84,21 +81,22 @@ impl ThresholdOffsets {
         }
     }
 
-    /// Part of the distance error that is attributed to the threshold offset.
+    /// Part of the distance error that is attributed to the threshold offset. `noise`: see [`Self::learn`].
     #[must_use]
-    pub fn attributed_to_offset(&self, record: &MoveRecord) -> Micrometre {
+    pub fn attributed_to_offset(&self, record: &MoveRecord, noise: Micrometre) -> Micrometre {
         let gain = match record.direction {
-            Direction::Lift => self.lift.gain(record, LIFT_ERROR),
-            Direction::Lower => self.lower.gain(record, LOWER_ERROR),
+            Direction::Lift => self.lift.gain(record, LIFT_ERROR, noise),
+            Direction::Lower => self.lower.gain(record, LOWER_ERROR, noise),
         };
         record.missing.scaled(gain, Divisor::THOUSAND)
     }
 
-    /// Takes in the record of a move.
-    pub fn learn(&mut self, record: &MoveRecord) {
+    /// Takes in the record of a move. `noise`: sigma of the distance error that does not depend on the distance
+    /// ([`crate::estimation::travel_distances`]).
+    pub fn learn(&mut self, record: &MoveRecord, noise: Micrometre) {
         match record.direction {
-            Direction::Lift => self.lift.learn(record, LIFT_ERROR),
-            Direction::Lower => self.lower.learn(record, LOWER_ERROR),
+            Direction::Lift => self.lift.learn(record, LIFT_ERROR, noise),
+            Direction::Lower => self.lower.learn(record, LOWER_ERROR, noise),
         }
     }
 }
@@ -112,26 +110,25 @@ impl KalmanEstimate {
     }
 
     /// Kalman gain in thousandths; zero for an outlier.
-    fn gain(&self, record: &MoveRecord, flow_error: i32) -> i32 {
+    fn gain(&self, record: &MoveRecord, flow_error: i32, noise: Micrometre) -> i32 {
         let sensitivity = record.sensitivity.0;
         let of_sigma = square(mul_div(sensitivity, self.sigma.0, Divisor::THOUSAND));
         let of_flow = square(mul_div(record.expected.0, flow_error, Divisor::THOUSAND));
         let all = of_sigma
             .saturating_add(of_flow)
-            .saturating_add(square(NOISE.0));
+            .saturating_add(square(noise.0));
         if sensitivity <= 0 || square(record.missing.0 / OUTLIER_SIGMAS) > all {
             return 0;
         }
-        // `all` is 90 000 at least.
         let gain = of_sigma.checked_div(all / 1000).unwrap_or(0).min(1000);
         gain.cast_signed()
     }
 
-    fn learn(&mut self, record: &MoveRecord, flow_error: i32) {
-        let mut gain = self.gain(record, flow_error);
+    fn learn(&mut self, record: &MoveRecord, flow_error: i32, noise: Micrometre) {
+        let mut gain = self.gain(record, flow_error, noise);
         if gain == 0 && record.missing < Micrometre::ZERO {
             self.sigma = INITIAL_SIGMA;
-            gain = self.gain(record, flow_error);
+            gain = self.gain(record, flow_error, noise);
         }
         let sensitivity = record.sensitivity.0;
         // um * 1/1000 over um/A is mA.
@@ -160,6 +157,7 @@ mod tests {
     use hitch_quantities::units::{MilliDegree, Millisecond};
 
     use super::*;
+    const NOISE: Micrometre = Micrometre(300);
     use crate::commissioning::teach::Taught;
 
     /// A lift of `way` um by the curve whose valve is `off_ma` off, and whose flow is wrong by `error`.
@@ -182,7 +180,7 @@ mod tests {
             let mut offsets = ThresholdOffsets::default();
             for _ in 0..6 {
                 let left_ma = off_ma - offsets.lift().0;
-                offsets.learn(&lift(12_000, left_ma, 0.0));
+                offsets.learn(&lift(12_000, left_ma, 0.0), NOISE);
             }
             let error_ma = (offsets.lift().0 - off_ma).abs();
             assert!(error_ma <= MIN_SIGMA.0, "{off_ma} mA: {error_ma} off");
@@ -195,9 +193,9 @@ mod tests {
         let mut offsets = ThresholdOffsets::default();
         let record = lift(100_000, 0, 0.025);
         // Blamed altogether it would be 50 mA.
-        let attributed = offsets.attributed_to_offset(&record);
+        let attributed = offsets.attributed_to_offset(&record, NOISE);
         assert!(attributed.0 < record.missing.0 * 7 / 10, "{attributed:?}");
-        offsets.learn(&record);
+        offsets.learn(&record, NOISE);
         let learnt = offsets.lift() - INITIAL_LIFT_OFFSET;
         assert!(learnt.0 < 35, "{learnt:?}");
     }
@@ -206,28 +204,34 @@ mod tests {
     fn a_large_overshoot_resets_the_sigma() {
         let mut offsets = ThresholdOffsets::default();
         for _ in 0..6 {
-            offsets.learn(&lift(12_000, 80 - offsets.lift().0, 0.0));
+            offsets.learn(&lift(12_000, 80 - offsets.lift().0, 0.0), NOISE);
         }
         let before = offsets.lift();
-        offsets.learn(&lift(12_000, -240, 0.0));
+        offsets.learn(&lift(12_000, -240, 0.0), NOISE);
         assert!(offsets.lift() < before - MilliAmp(60), "{offsets:?}");
     }
 
     #[test]
     fn obstacles_are_ignored_and_extremes_stay_bounded() {
         let mut offsets = ThresholdOffsets::default();
-        offsets.learn(&MoveRecord {
-            missing: Micrometre(12_000),
-            ..lift(12_000, 0, 0.0)
-        });
+        offsets.learn(
+            &MoveRecord {
+                missing: Micrometre(12_000),
+                ..lift(12_000, 0, 0.0)
+            },
+            NOISE,
+        );
         assert_eq!(offsets.lift(), INITIAL_LIFT_OFFSET, "stood in the way");
         for missing in [i32::MIN, -900, 900, i32::MAX] {
             for sensitivity in [i32::MIN, 0, 1, 6_000, i32::MAX] {
-                offsets.learn(&MoveRecord {
-                    missing: Micrometre(missing),
-                    sensitivity: Micrometre(sensitivity),
-                    ..lift(i32::MAX, 0, 0.0)
-                });
+                offsets.learn(
+                    &MoveRecord {
+                        missing: Micrometre(missing),
+                        sensitivity: Micrometre(sensitivity),
+                        ..lift(i32::MAX, 0, 0.0)
+                    },
+                    NOISE,
+                );
                 assert!(offsets.lift().magnitude() <= MAX_OFFSET);
             }
         }

@@ -14,9 +14,6 @@ use crate::estimation::motion_observer::MotionObserver;
 use crate::estimation::move_record::{MoveRecord, MoveRecorder};
 use crate::valve::phase::Direction;
 
-/// A lift that overshoots by more than this has an oscillating load: 0.6 degree.
-const OVERSHOOT_LIMIT: Micrometre = Micrometre(1_000);
-
 /// Recorder of the present move, and the offsets that earlier moves identified.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ValveAdaptation {
@@ -42,15 +39,17 @@ impl ValveAdaptation {
     }
 
     /// A correction is due: finishes the record of the move that ended with this `overshoot`. A large overshoot of a
-    /// lift is caused by an oscillation, so it does not identify the offset. True until the move has been evaluated.
+    /// lift, beyond `limit`, is caused by an oscillation, so it does not identify the offset. True until the move has been
+    /// evaluated.
     pub fn finish_before_correction(
         &mut self,
         overshoot: Micrometre,
+        limit: Micrometre,
         motion: &mut MotionObserver,
     ) -> bool {
         if let Some(recorder) = &mut self.recorder {
             recorder.finish();
-            if recorder.direction() == Direction::Lift && overshoot > OVERSHOOT_LIMIT {
+            if recorder.direction() == Direction::Lift && overshoot > limit {
                 motion.confirm_oscillation();
                 self.recorder = None;
             }
@@ -72,9 +71,9 @@ impl ValveAdaptation {
         }
     }
 
-    /// Takes in the record of a move.
-    pub fn learn(&mut self, record: &MoveRecord) {
-        self.offsets.learn(record);
+    /// Takes in the record of a move. `noise`: see [`ThresholdOffsets::learn`].
+    pub fn learn(&mut self, record: &MoveRecord, noise: Micrometre) {
+        self.offsets.learn(record, noise);
     }
 }
 
@@ -82,28 +81,30 @@ impl ValveAdaptation {
 mod tests {
     use super::*;
 
+    const LIMIT: Micrometre = Micrometre(1_000);
+
     #[test]
     fn a_move_is_evaluated_before_its_correction_and_an_oscillating_lift_is_discarded() {
         for (direction, overshoot, swings) in [
-            (Direction::Lift, OVERSHOOT_LIMIT, false),
-            (Direction::Lift, OVERSHOOT_LIMIT + Micrometre(1), true),
-            (Direction::Lower, OVERSHOOT_LIMIT + Micrometre(1), false),
+            (Direction::Lift, LIMIT, false),
+            (Direction::Lift, LIMIT + Micrometre(1), true),
+            (Direction::Lower, LIMIT + Micrometre(1), false),
         ] {
             let (mut adaptation, mut motion) =
                 (ValveAdaptation::default(), MotionObserver::default());
             assert!(
-                !adaptation.finish_before_correction(overshoot, &mut motion),
+                !adaptation.finish_before_correction(overshoot, LIMIT, &mut motion),
                 "nothing under way"
             );
             adaptation.begin(direction, Micrometre::ZERO);
             assert_eq!(
-                adaptation.finish_before_correction(overshoot, &mut motion),
+                adaptation.finish_before_correction(overshoot, LIMIT, &mut motion),
                 !swings
             );
             assert_eq!(motion.has_compensator_oscillation(), swings);
             let record = adaptation.follow(true, &motion);
             assert_eq!(record.is_some(), !swings, "{direction:?}");
-            assert!(!adaptation.finish_before_correction(overshoot, &mut motion));
+            assert!(!adaptation.finish_before_correction(overshoot, LIMIT, &mut motion));
         }
     }
 }

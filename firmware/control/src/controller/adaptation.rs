@@ -70,13 +70,16 @@ impl Control {
         let calibration = &self.calibration;
         let rest = self.rest.position();
         let record = recorder.result(rest, self.scale, calibration.hydraulics.piston_area);
-        let lag = calibration.sensors.angle_lag;
-        let of_offset = self.adaptation.offsets().attributed_to_offset(&record);
+        let noise = self.distances.noise;
+        let of_offset = self
+            .adaptation
+            .offsets()
+            .attributed_to_offset(&record, noise);
         if self
             .motion
-            .learn_from_move(&record, of_offset, rest, &calibration.motion, lag)
+            .learn_from_move(&record, of_offset, rest, calibration)
         {
-            self.adaptation.learn(&record);
+            self.adaptation.learn(&record, noise);
         }
     }
 }

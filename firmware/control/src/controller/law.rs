@@ -160,9 +160,11 @@ impl Control {
             .reason_to_move(target, rest, &self.calibration.position)
         {
             Some(MoveReason::SetPoint) => false,
-            Some(MoveReason::Drift) => self
-                .adaptation
-                .finish_before_correction(rest - target, &mut self.motion),
+            Some(MoveReason::Drift) => self.adaptation.finish_before_correction(
+                rest - target,
+                self.distances.overshoot,
+                &mut self.motion,
+            ),
             None => true,
         }
     }
@@ -290,6 +292,7 @@ impl Control {
         let compensation = self.hysteresis.step(
             self.phase.speed().magnitude(),
             self.calibration.hydraulics.hysteresis,
+            self.distances.deceleration,
         );
         let offsets = self.adaptation.offsets();
         let corrected =

@@ -19,6 +19,7 @@ use crate::estimation::hysteresis_compensation::HysteresisCompensation;
 use crate::estimation::load::LoadEstimate;
 use crate::estimation::motion_observer::MotionObserver;
 use crate::estimation::rest::RestPosition;
+use crate::estimation::travel_distances::TravelDistances;
 use crate::motion::position::PositionControl;
 use crate::motion::rate::RateControl;
 use crate::operator::button::ButtonGuard;
@@ -72,6 +73,7 @@ pub struct Control {
     rate: RateControl,
     motion: MotionObserver,
     closing: ClosingCurves,
+    distances: TravelDistances,
     hysteresis: HysteresisCompensation,
     /// Set point and its piston travel, which is looked up when the set point changes.
     target: (MilliDegree, Micrometre),
@@ -106,6 +108,7 @@ impl Control {
         curves.fill(&calibration);
         let scale = curves.scale(load.drop());
         let closing = ClosingCurves::of(&calibration);
+        let distances = TravelDistances::of(&calibration.linkage);
         let origin = calibration.linkage.travel(MilliDegree::ZERO);
         Self {
             calibration,
@@ -122,6 +125,7 @@ impl Control {
             rate: RateControl::default(),
             motion: MotionObserver::default(),
             closing,
+            distances,
             hysteresis: HysteresisCompensation::default(),
             target: (MilliDegree::ZERO, origin),
             load,
@@ -156,6 +160,7 @@ impl Control {
     /// the valve curves differ, their adaptation is reset.
     pub fn recalibrate(&mut self, calibration: ValidCalibration) {
         self.closing = ClosingCurves::of(&calibration);
+        self.distances = TravelDistances::of(&calibration.linkage);
         let measured_at = |calibration: &ValidCalibration| calibration.hydraulics.reference_drop;
         if (&calibration.lift, &calibration.lower)
             != (&self.calibration.lift, &self.calibration.lower)

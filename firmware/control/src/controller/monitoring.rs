@@ -32,7 +32,12 @@ impl Control {
                 self.motion.enable_closing_delay();
                 self.adaptation.begin(direction, self.rest.position());
             }
-            MoveReason::Drift => self.drift.start_correction(&self.calibration.hold)?,
+            MoveReason::Drift => {
+                let away = self.target.1 - self.rest.position();
+                self.position
+                    .begin_correction(direction, away, &self.calibration.position);
+                self.drift.start_correction(&self.calibration.hold)?;
+            }
         }
         Ok(())
     }

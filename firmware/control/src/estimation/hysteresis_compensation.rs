@@ -16,10 +16,14 @@ impl HysteresisCompensation {
         self.compensation > MilliAmp::ZERO
     }
 
-    /// One step at the demanded `speed`: the current reduction for the same flow.
-    pub fn step(&mut self, speed: MicrometrePerSecond, hysteresis: MilliAmp) -> MilliAmp {
-        /// A speed below the peak by this much is a deceleration: corrections of the map are smaller.
-        const DECELERATION_THRESHOLD: MicrometrePerSecond = MicrometrePerSecond(4_000);
+    /// One step at the demanded `speed`: the current reduction for the same flow. `deceleration`: see
+    /// [`super::travel_distances::TravelDistances`].
+    pub fn step(
+        &mut self,
+        speed: MicrometrePerSecond,
+        hysteresis: MilliAmp,
+        deceleration: MicrometrePerSecond,
+    ) -> MilliAmp {
         /// The reduction is a ramp of so many steps: a step of current would excite the load.
         const RAMP_STEPS: i32 = 16;
         if speed <= MicrometrePerSecond::ZERO {
@@ -27,7 +31,7 @@ impl HysteresisCompensation {
             return MilliAmp::ZERO;
         }
         self.peak_speed = self.peak_speed.max(speed);
-        if self.peak_speed - speed > DECELERATION_THRESHOLD {
+        if self.peak_speed - speed > deceleration {
             let step = MilliAmp((hysteresis.0 / RAMP_STEPS).max(1));
             self.compensation = (self.compensation + step).min(hysteresis);
         }

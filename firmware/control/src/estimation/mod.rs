@@ -12,4 +12,6 @@ pub mod peak_velocity_ratio;
 pub mod rest;
 pub mod spool;
 pub mod spool_lag;
+pub mod stop_prediction;
+pub mod travel_distances;
 pub mod valve_closing_delay;

@@ -24,11 +24,12 @@ use hitch_quantities::{Calibration, CoilCurrents};
 use super::compensator_oscillation::CompensatorOscillation;
 use super::damping::Damping;
 use super::delayed_output::{self, DelayedOutput, LaggingAngle, Pole};
-use super::free_fall::{free_fall_stopping_distance, next_speed};
+use super::free_fall::FreeFall;
 use super::move_record::MoveRecord;
 use super::peak_velocity_ratio::PeakVelocityRatio;
 use super::spool::Spool;
 use super::spool_lag::{LagRegression, MillisecondQ3, SpoolLagEstimator, nominal_lags};
+use super::stop_prediction::{StopPrediction, distance_in};
 use super::valve_closing_delay::ValveClosingDelay;
 use crate::valve::closing::ClosingCurves;
 use crate::valve::drop_scale::DropScale;
@@ -218,11 +219,12 @@ impl MotionObserver {
         record: &MoveRecord,
         of_offset: Micrometre,
         rest: Micrometre,
-        parameters: &MotionParameters,
-        angle_lag: Millisecond,
+        calibration: &Calibration,
     ) -> bool {
+        let (parameters, hydraulics) = (&calibration.motion, &calibration.hydraulics);
+        let angle_lag = calibration.sensors.angle_lag;
         if angle_lag > Millisecond::ZERO {
-            self.learn_closing_delay(record.direction, rest);
+            self.learn_closing_delay(record.direction, rest, hydraulics);
             return true;
         }
         self.lag_regression.correct(record, of_offset);
@@ -253,19 +255,25 @@ impl MotionObserver {
         }
         other.initialize_from(*lag);
         self.lag_correction = MillisecondQ3::default();
-        self.learn_closing_delay(record.direction, rest);
+        self.learn_closing_delay(record.direction, rest, hydraulics);
         true
     }
 
     /// Identifies the closing delay of a valve from where the hitch came to rest.
-    fn learn_closing_delay(&mut self, direction: Direction, rest: Micrometre) {
+    fn learn_closing_delay(
+        &mut self,
+        direction: Direction,
+        rest: Micrometre,
+        hydraulics: &HydraulicParameters,
+    ) {
         let [lift, lower] = &mut self.closing_delays;
-        let (delay, other) = match direction {
-            Direction::Lift => (lift, lower),
-            Direction::Lower => (lower, lift),
+        let [lift_lag, lower_lag] = nominal_lags(hydraulics);
+        let (delay, other, spool_lag) = match direction {
+            Direction::Lift => (lift, lower, lift_lag),
+            Direction::Lower => (lower, lift, lower_lag),
         };
         let (place, speed) = self.cut;
-        delay.learn(rest - place, speed);
+        delay.learn(rest - place, speed, spool_lag);
         other.initialize_from(*delay);
     }
 
@@ -325,7 +333,7 @@ impl MotionObserver {
         let before = self.model_speed;
         let area = hydraulics.piston_area;
         let settled = piston_speed(down, area);
-        self.sinking = next_speed(self.sinking, settled);
+        self.sinking = FreeFall::of(hydraulics.load_ratio).next_speed(self.sinking, settled);
         self.opening_speed = piston_speed(up, area) - settled;
         self.model_speed = piston_speed(up, area) - self.sinking;
         if slowing {
@@ -430,7 +438,8 @@ impl MotionObserver {
         let lag = (lag + self.lag_correction).max(MillisecondQ3(0));
         let within = |time| distance_in(time, speed);
         StopPrediction {
-            without_lag: self.position() - free_fall_stopping_distance(self.sinking)
+            without_lag: self.position()
+                - FreeFall::of(hydraulics.load_ratio).stopping_distance(self.sinking)
                 + within(delay),
             lag_distance: within(lag),
         }
@@ -448,41 +457,6 @@ impl MotionObserver {
             false => closing.lift.share(lift),
         }
     }
-}
-
-/// Predicted stop of the piston.
-#[derive(Clone, Copy, Debug)]
-pub struct StopPrediction {
-    /// Stop without spool lag. It contains the stopping distance of a sinking load ([`free_fall_stopping_distance`])
-    /// and the closing delay ([`ValveClosingDelay`]).
-    without_lag: Micrometre,
-    /// Distance that the spool lag adds.
-    lag_distance: Micrometre,
-}
-
-impl StopPrediction {
-    /// Stop position if the demanded speed is zero from now on.
-    ///
-    /// With a first-order spool, `v' = (u - v) / T`, the point `P = x + T v` moves with exactly the
-    /// demanded speed: `P' = v + T v' = u`. A control law for `P` needs no lag compensation.
-    #[must_use]
-    pub fn predicted_stop(&self) -> Micrometre {
-        self.without_lag + self.lag_distance
-    }
-
-    /// Stop position if the coil is cut now; `share` is [`MotionObserver::closing_share`].
-    #[must_use]
-    pub fn predicted_stop_after_cut(&self, share: i32) -> Micrometre {
-        self.without_lag + self.lag_distance.scaled(share, Divisor::THOUSAND)
-    }
-}
-
-/// Distance at this speed in a lag or delay. The product fits a word: the speed is limited, and the largest lag
-/// (calibration plus identified) is 0.7 s.
-fn distance_in(time: MillisecondQ3, speed: MicrometrePerSecond) -> Micrometre {
-    const MAX_SPEED: MicrometrePerSecond = MicrometrePerSecond(380_000);
-    let speed = speed.limited(-MAX_SPEED, MAX_SPEED);
-    Micrometre(MillisecondQ3::IN_SECOND.divide(speed.0.wrapping_mul(time.0)))
 }
 
 /// Correction of one step.

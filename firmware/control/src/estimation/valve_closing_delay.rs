@@ -12,7 +12,7 @@
 //! Underdamped spools of 50 rad/s take some 15 ms, those of 30 rad/s 20 to 40 ms.
 
 use hitch_quantities::fixed::Divisor;
-use hitch_quantities::units::{Micrometre, MicrometrePerSecond};
+use hitch_quantities::units::{Micrometre, MicrometrePerSecond, Millisecond};
 
 use super::spool_lag::MillisecondQ3;
 
@@ -25,8 +25,8 @@ const MAX_WEIGHT: i32 = 2_000;
 const INITIAL_DELAY: MillisecondQ3 = MillisecondQ3(8 * 2);
 /// A delay that the stop band covers.
 const USUAL_DELAY: MillisecondQ3 = MillisecondQ3(8 * 4);
-/// Largest delay: a larger one is an oscillating load.
-const MAX_DELAY: MillisecondQ3 = MillisecondQ3(8 * 30);
+/// Largest delay in quarters of the calibrated spool lag: a larger one is an oscillating load.
+const MAX_QUARTERS: i32 = 3;
 /// Largest speed at the cut, mm/s, and largest position error.
 const MAX_SPEED: i32 = 300;
 const MAX_ERROR: Micrometre = Micrometre(3_000);
@@ -55,10 +55,15 @@ impl ValveClosingDelay {
     }
 
     /// Takes in the position error at rest (positive: overshoot) after a cut at `speed`. Both are positive in the
-    /// direction of the move.
+    /// direction of the move. `spool_lag`: that of the calibration.
     ///
     /// No spool closes earlier than the model. An undershoot has another cause.
-    pub fn learn(&mut self, beyond: Micrometre, speed: MicrometrePerSecond) {
+    pub fn learn(
+        &mut self,
+        beyond: Micrometre,
+        speed: MicrometrePerSecond,
+        spool_lag: Millisecond,
+    ) {
         let speed = (speed.0 >> 10).clamp(-MAX_SPEED, MAX_SPEED);
         let beyond = beyond.limited(Micrometre(-MAX_ERROR.0), MAX_ERROR);
         let squared = speed.wrapping_mul(speed);
@@ -67,7 +72,7 @@ impl ValveClosingDelay {
             .wrapping_mul(beyond.0 << 3)
             .wrapping_sub(squared.wrapping_mul(USUAL_DELAY.0));
         let delay = self.delay + MillisecondQ3(Divisor::at_least_one(self.weight).divide(further));
-        self.delay = delay.max(MillisecondQ3(0)).min(MAX_DELAY);
+        self.delay = delay.max(MillisecondQ3(0)).min(largest(spool_lag));
         self.weight = self.weight.min(MAX_WEIGHT);
     }
 
@@ -79,9 +84,18 @@ impl ValveClosingDelay {
     }
 }
 
+/// Largest delay of a spool with this lag.
+const fn largest(spool_lag: Millisecond) -> MillisecondQ3 {
+    // Eighths of a millisecond.
+    MillisecondQ3(spool_lag.0.saturating_mul(8 * MAX_QUARTERS / 4))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Lag of the rig's spools.
+    const LAG: Millisecond = Millisecond(40);
 
     /// Position error at `speed_mm_s` of a valve with this delay, um.
     fn beyond(valve: ValveClosingDelay, delay_ms: i32, speed_mm_s: i32) -> Micrometre {
@@ -93,7 +107,7 @@ mod tests {
         let mut valve = ValveClosingDelay::default();
         for _ in 0..moves {
             let beyond = beyond(valve, delay_ms, speed_mm_s);
-            valve.learn(beyond, MicrometrePerSecond(speed_mm_s * 1_000));
+            valve.learn(beyond, MicrometrePerSecond(speed_mm_s * 1_000), LAG);
         }
         f64::from(valve.delay().0) / 8.0
     }
@@ -127,11 +141,11 @@ mod tests {
     fn one_valve_initializes_the_other_until_that_one_moves() {
         let (mut lift, mut lower) = (ValveClosingDelay::default(), ValveClosingDelay::default());
         let speed = MicrometrePerSecond(50_000);
-        lift.learn(beyond(lift, 16, 50), speed);
+        lift.learn(beyond(lift, 16, 50), speed, LAG);
         lower.initialize_from(lift);
         assert_eq!(lower.delay(), lift.delay());
         assert!(lower.delay() > MillisecondQ3(8 * 10), "{lower:?}");
-        lower.learn(beyond(lower, 16, 50), speed);
+        lower.learn(beyond(lower, 16, 50), speed, LAG);
         let identified = lower.delay();
         lower.initialize_from(ValveClosingDelay::default());
         assert_eq!(lower.delay(), identified);
@@ -139,12 +153,14 @@ mod tests {
 
     #[test]
     fn extremes_and_undershoots_stay_within_the_limits() {
-        for beyond in [i32::MIN, -1_000, 0, 1_000, i32::MAX] {
-            for speed in [i32::MIN, -300_000, 0, 300_000, i32::MAX] {
-                let mut valve = ValveClosingDelay::default();
-                for _ in 0..10 {
-                    valve.learn(Micrometre(beyond), MicrometrePerSecond(speed));
-                    assert!((0..=MAX_DELAY.0).contains(&valve.delay().0));
+        for lag in [Millisecond(0), LAG, Millisecond(500)] {
+            for beyond in [i32::MIN, -1_000, 0, 1_000, i32::MAX] {
+                for speed in [i32::MIN, -300_000, 0, 300_000, i32::MAX] {
+                    let mut valve = ValveClosingDelay::default();
+                    for _ in 0..10 {
+                        valve.learn(Micrometre(beyond), MicrometrePerSecond(speed), lag);
+                        assert!((0..=largest(lag).0).contains(&valve.delay().0));
+                    }
                 }
             }
         }

@@ -3,3 +3,4 @@
 pub mod bands;
 pub mod position;
 pub mod rate;
+pub mod stop_band;

@@ -17,10 +17,6 @@
 //! A load that oscillates backwards before the cut seems to have distance left. Reopening the valve for that would
 //! excite the next oscillation and cause an overshoot. Therefore a move does not accelerate again once the final
 //! approach has begun.
-//!
-//! A spool that has moved through its hysteresis and is held by friction needs the current of the rising branch to move
-//! again. The hitch may then stand still a tenth of a degree before the cut position, with its coil on. Therefore the
-//! stop band widens when the final approach takes long.
 
 use hitch_quantities::Calibration;
 use hitch_quantities::calibration::design_parameters::PositionParameters;
@@ -31,7 +27,9 @@ use hitch_quantities::units::{
 };
 
 use super::bands::Bands;
-use crate::estimation::motion_observer::{MotionObserver, StopPrediction};
+use super::stop_band;
+use crate::estimation::motion_observer::MotionObserver;
+use crate::estimation::stop_prediction::StopPrediction;
 use crate::valve::closing::ClosingCurves;
 use crate::valve::drop_scale::DropScale;
 use crate::valve::phase::{Demand, Direction, Phase};
@@ -40,13 +38,6 @@ use crate::valve::phase::{Demand, Direction, Phase};
 const CORRECTION_FACTOR: i32 = 3;
 /// Speed limit of the final approach, in creep speeds: the remaining distance is half a millimetre.
 const FINAL_APPROACH_FACTOR: i32 = 6;
-/// Duration of the final approach from which the stop band widens.
-const STOP_BAND_DELAY: Millisecond = Millisecond(110);
-/// Growth of the stop band, um/ms: half of the creep speed.
-const STOP_BAND_GROWTH: i32 = 2;
-/// Largest growth of the stop band, um: with the stop band itself 0.17 degree.
-const MAX_STOP_BAND_EXTENSION: i32 = 130;
-
 /// The position controller.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PositionControl {
@@ -61,6 +52,9 @@ pub struct PositionControl {
     started: bool,
     /// The present move corrects a move that has missed its set point.
     is_correction: bool,
+    /// How far corrections to this set point go beyond their predicted stop, and the direction of the last one.
+    beyond: Micrometre,
+    corrected: Option<Direction>,
     /// Duration of the final approach of the present move.
     approach_time: Millisecond,
     /// The present position counts as the set point until the lever moves (end stop).
@@ -153,6 +147,28 @@ impl PositionControl {
         Some(self.reason())
     }
 
+    /// A correction starts in this direction, from a hitch at rest `away` from the set point. If the last one was in the
+    /// other direction, it has gone too far. The observer has not seen why: the correction is a hundred milliseconds long,
+    /// and its valve opens by a threshold that it does not know. The next one therefore ends earlier by as much. Without
+    /// this a hitch moves back and forth about its set point until its corrections are spent.
+    pub fn begin_correction(
+        &mut self,
+        direction: Direction,
+        away: Micrometre,
+        parameters: &PositionParameters,
+    ) {
+        let away = away.magnitude();
+        self.beyond = match self.corrected {
+            Some(last) if last != direction => {
+                let limit = self.bands(parameters).restart_band - parameters.stop_band;
+                (self.beyond + away).min(limit.max(Micrometre::ZERO))
+            }
+            Some(_) => (self.beyond - away).max(Micrometre::ZERO),
+            None => Micrometre::ZERO,
+        };
+        self.corrected = Some(direction);
+    }
+
     /// A move starts; the reason for it.
     pub fn start(&mut self) -> MoveReason {
         let reason = self.reason();
@@ -205,9 +221,10 @@ impl PositionControl {
         };
         let ahead_of = |point: Micrometre| Micrometre(direction.sign((target - point).0));
         let stop_prediction: StopPrediction = motion.stop_prediction(&calibration.hydraulics);
+        let ahead_of = |point: Micrometre| ahead_of(point) - self.beyond;
         let remaining = ahead_of(stop_prediction.predicted_stop());
         // The stopping distance after a cut is shorter than that of a ramp, so the ramp is checked first.
-        let band = parameters.stop_band + self.stop_band_extension();
+        let band = stop_band::after(self.approach_time, parameters);
         let cut = remaining <= band
             && ahead_of(stop_prediction.predicted_stop_after_cut(motion.closing_share(closing)))
                 <= band;
@@ -221,14 +238,6 @@ impl PositionControl {
             speed,
             acceleration,
         }
-    }
-
-    /// Growth of the stop band in a long final approach.
-    fn stop_band_extension(&self) -> Micrometre {
-        let since = (self.approach_time - STOP_BAND_DELAY)
-            .0
-            .clamp(0, MAX_STOP_BAND_EXTENSION / STOP_BAND_GROWTH);
-        Micrometre(since.wrapping_mul(STOP_BAND_GROWTH))
     }
 
     /// Limits the `demand` in the final approach and in a correction.
@@ -351,6 +360,30 @@ mod tests {
     }
 
     #[test]
+    fn a_correction_that_went_too_far_makes_the_next_one_end_earlier() {
+        let parameters = PositionParameters::NOMINAL;
+        let mut position = PositionControl::default();
+        let mut beyond = |direction, away| {
+            position.begin_correction(direction, Micrometre(away), &parameters);
+            position.beyond.0
+        };
+        let most = (parameters.restart_band - parameters.stop_band).0;
+        assert_eq!(beyond(Direction::Lift, 700), 0, "nothing known");
+        assert_eq!(beyond(Direction::Lift, 700), 0, "a leak goes on");
+        assert_eq!(beyond(Direction::Lower, -300), 300, "too far");
+        assert_eq!(beyond(Direction::Lower, -200), 100, "not far enough");
+        // A hitch that has to be corrected has more left than the stop band.
+        assert_eq!(beyond(Direction::Lift, 5_000), most);
+        position.follow(
+            parameters.lower_limit,
+            parameters.upper_limit,
+            false,
+            &parameters,
+        );
+        assert_eq!(position.beyond, Micrometre::ZERO, "another set point");
+    }
+
+    #[test]
     fn a_move_that_has_slowed_down_to_its_end_stays_slow_until_the_next_one() {
         let parameters = PositionParameters::NOMINAL;
         let (fast, end) = (
@@ -415,16 +448,14 @@ mod tests {
         let mut position = PositionControl::default();
         position.start();
         assert_eq!(time_to_cut(&mut position, Micrometre::ZERO), Some(0));
-        for (short_of, longest_ms) in [(20, 120), (MAX_STOP_BAND_EXTENSION, 180)] {
+        let largest = stop_band::largest_extension(&PositionParameters::NOMINAL).0;
+        for (short_of, longest_ms) in [(20, 121), (largest, 180)] {
             position.start();
             let waited_ms = time_to_cut(&mut position, Micrometre(short_of)).unwrap();
             assert!((100..=longest_ms).contains(&waited_ms), "{waited_ms} ms");
         }
         position.start();
-        assert_eq!(
-            time_to_cut(&mut position, Micrometre(MAX_STOP_BAND_EXTENSION + 1)),
-            None
-        );
+        assert_eq!(time_to_cut(&mut position, Micrometre(largest + 1)), None);
     }
 
     #[test]
@@ -439,7 +470,7 @@ mod tests {
         position.start();
         let end = creep_multiple(FINAL_APPROACH_FACTOR, &parameters);
         let _ = position.limit_approach(demand(end), parameters.lower_speed, &parameters);
-        for _ in 0..STOP_BAND_DELAY.0 {
+        for _ in 0..stop_band::delay(&parameters).0 {
             let fast = demand(parameters.lift_speed);
             let _ = position.limit_approach(fast, parameters.lower_speed, &parameters);
         }
@@ -450,16 +481,12 @@ mod tests {
     #[test]
     fn a_hitch_that_goes_on_at_its_slowest_gets_where_it_should() {
         let way_per_ms = PositionParameters::NOMINAL.creep_speed.0 / 1_000;
-        assert!(
-            STOP_BAND_GROWTH < way_per_ms,
-            "is given up sooner than it goes"
-        );
         let end_mm_per_s =
             creep_multiple(FINAL_APPROACH_FACTOR, &PositionParameters::NOMINAL).0 / 1_000;
         let at_end_um = 1_000 * end_mm_per_s / PositionParameters::NOMINAL.approach_gain.0;
         let slowest_um = at_end_um - PositionParameters::NOMINAL.stop_band.0;
         assert!(
-            slowest_um / way_per_ms <= STOP_BAND_DELAY.0,
+            slowest_um / way_per_ms <= stop_band::delay(&PositionParameters::NOMINAL).0,
             "{slowest_um} um"
         );
     }

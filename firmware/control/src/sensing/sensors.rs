@@ -58,7 +58,8 @@ impl Sensors {
             angle: angle?,
             // An implement does not replace a faulty lever.
             set_point: lever.map(|lever| inputs.set_point.unwrap_or(lever))?,
-            cylinder_pressure: pressure(inputs.cylinder_pressure),
+            cylinder_pressure: pressure(inputs.cylinder_pressure)
+                .map(|pressure| pressure - parameters.pressure_offset),
             pump_pressure: pressure(inputs.pump_pressure),
         })
     }
@@ -125,6 +126,27 @@ mod tests {
             );
         }
         assert_eq!(sensors.judge(&sample(None), &parameters), Err(Fault::Angle));
+    }
+
+    #[test]
+    fn the_offset_of_a_pressure_is_taken_off_after_its_range_is_checked() {
+        let parameters = SensorParameters {
+            pressure_offset: MilliBar(3_000),
+            ..SensorParameters::NOMINAL
+        };
+        let judged = |shown: MilliBar| {
+            let inputs = Inputs {
+                cylinder_pressure: Some(shown),
+                pump_pressure: Some(shown),
+                ..sample(Some(80_000))
+            };
+            let sensed = Sensors::default().judge(&inputs, &parameters).unwrap();
+            [sensed.cylinder_pressure, sensed.pump_pressure]
+        };
+        for shown in [MilliBar(0), MilliBar(50_000), parameters.pressure_max] {
+            assert_eq!(judged(shown), [Some(shown - MilliBar(3_000)), Some(shown)]);
+        }
+        assert_eq!(judged(parameters.pressure_max + MilliBar(1)), [None; 2]);
     }
 
     #[test]

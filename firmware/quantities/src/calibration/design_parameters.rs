@@ -16,6 +16,8 @@ parameter_group! {
     HydraulicParameters, "hydraulics" {
         /// Piston area: turns piston speed into flow. 76 mm bore.
         piston_area: SquareMillimetre = 4537, 500..=50_000;
+        /// Travel of the load for each travel of the piston, the mean over the stroke: gravity accelerates a sinking piston with as many times less.
+        load_ratio: PerMille = 4_300, 500..=30_000;
         /// Time constant of the lift valve's solenoid and spool: what flows on after the coil has been told to stop.
         spool_lag: Millisecond = 40, 0..=500;
         /// The same of the lowering valve: of one kind, but by 10 ms and more another unit.
@@ -60,6 +62,8 @@ parameter_group! {
         pressure_min: MilliBar = -5_000, -50_000..=0;
         /// Largest pressure that a healthy sensor shows: shock valve plus margin.
         pressure_max: MilliBar = 260_000, 20_000..=600_000;
+        /// What the sensor of the cylinder shows without pressure: it is taken off the reading.
+        pressure_offset: MilliBar = 0, -20_000..=20_000;
         /// How long a bad angle or lever sample is bridged by the last good one before it is a fault: at full speed the hitch moves less than 1 degree. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
         bridged: Millisecond = 5, 0..=44;
         /// Time constant with which the angle sensor and its filter follow the hitch. An error to the long side costs time, one to the short side overshoot. A frozen angle is found later by it, so that some of the range is refused; see `docs/safety.md`.
