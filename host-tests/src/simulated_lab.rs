@@ -3,8 +3,7 @@
 
 use hitch_campaign::{Bench, Campaign, Noise, Run};
 use hitch_plant::simulation::simulate;
-use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Currents, HitchRig, Model, Rig};
+use hitch_plant::{Channel, Currents, Model};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
@@ -75,22 +74,21 @@ fn log(
         })
         .collect();
     let error: f64 = StandardNormal.sample(random);
-    let (bench, stand) = match manoeuvre.stand {
+    // As it is stated in the campaign, and as it is.
+    let (stated, real, start_deg) = match manoeuvre.stand {
         Stand::Hitch { load_kg, start_deg } => {
-            let hitch = HitchRig {
-                load_kg: load_kg * (1.0 + LOAD_SIGMA * error),
-                start_angle_rad: start_deg.to_radians(),
-            };
-            (Bench::Hitch { load_kg }, Rig::Hitch(hitch))
+            let real_kg = load_kg * (1.0 + LOAD_SIGMA * error);
+            let [stated, real] = [load_kg, real_kg].map(|load_kg| Bench::Hitch { load_kg });
+            (stated, real, start_deg)
         }
-        Stand::Flow { port_bar } => {
-            let port_pressure_pa = pa_from_bar(port_bar);
-            let bench = Bench::Flow {
-                port_pressure_bar: port_bar,
-            };
-            (bench, Rig::Flow { port_pressure_pa })
+        Stand::Flow {
+            port_bar: port_pressure_bar,
+        } => {
+            let bench = Bench::Flow { port_pressure_bar };
+            (bench, bench, 0.0)
         }
     };
+    let stand = real.rig(start_deg.to_radians());
     let trace = simulate(rig, stand, manoeuvre.oil_temperature_c, &fine_s, &currents);
     let readings: Vec<[f64; 4]> = (0..=samples)
         .map(|sample| Channel::ALL.map(|channel| trace.channel(channel)[sample * FINER]))
@@ -101,7 +99,7 @@ fn log(
     };
     Run {
         file: manoeuvre.file.clone(),
-        bench,
+        bench: stated,
         oil_temperature_c: manoeuvre.oil_temperature_c,
         oil_temperature_known: true,
         time_s: fine_s.iter().copied().step_by(FINER).collect(),

@@ -35,6 +35,16 @@ pub trait ChannelFile {
     /// Its channels other than times.
     fn channels(&self) -> &[LogChannel];
 
+    /// Whether it is a recording that is cut off.
+    fn is_cut_off(&self) -> bool {
+        false
+    }
+
+    /// Whether a channel lacks its last samples.
+    fn is_shortened(&self, _channel: usize) -> bool {
+        false
+    }
+
     /// The samples of a channel; NaN where there is no valid one. `time` is the column of times that is assigned to the
     /// channel `lift`, for a format in which channels may lack times of their own.
     ///
@@ -63,9 +73,14 @@ pub fn read(
     let lift = sources.iter().find(|wanted| wanted.column.name == LIFT);
     let lift = lift.map_or(Ok(None), |wanted| find(file, wanted))?;
     let mut taken: Vec<(&'static str, Series)> = Vec::new();
+    let mut whole_s = f64::INFINITY;
     for wanted in sources.iter().filter(|wanted| wanted.column.name != TIME) {
         if let Some(channel) = find(file, wanted)? {
             let series = scaled_series(file, channel, wanted, (time, lift), linkage)?;
+            if file.is_shortened(channel) {
+                let last_s = series.times_s.last().copied();
+                whole_s = whole_s.min(last_s.unwrap_or(whole_s));
+            }
             taken.push((wanted.column.name, series));
         }
     }
@@ -76,7 +91,11 @@ pub fn read(
     };
     let source = Arc::new(file.source().clone());
     let series = taken.iter().map(|(name, series)| (*name, 0, series));
-    Table::of_series(&source, (0, rows), series, Cells::Nowhere)
+    let table = Table::of_series(&source, (0, &rows.until(whole_s)), series, Cells::Nowhere)?;
+    Ok(match file.is_cut_off() {
+        true => table.cut_off(),
+        false => table,
+    })
 }
 
 /// The channels with samples.

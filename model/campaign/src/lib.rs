@@ -19,7 +19,6 @@ mod cut;
 mod dropout;
 mod manifest;
 mod mdf_log;
-mod mdf_unit;
 mod number_log;
 mod run_log;
 mod scale;

@@ -4,17 +4,18 @@ use std::collections::{HashMap, HashSet};
 use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
+use std::sync::Arc;
 
 use falcon_mdf::mdf3::Mdf3File;
 use falcon_mdf::{Channel, Mf4File};
 use hitch_input::file_kind;
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::source_file::SourceFile;
+use hitch_mdf_file::{Recording, unit_of_conversion};
 
 use crate::CampaignError;
 use crate::channel_log::{ChannelFile, LogChannel};
 use crate::columns::Source;
-use crate::mdf_unit::UnitReader;
 use crate::series::Series;
 use crate::survey::OF_GROUP;
 use crate::time_base::unit_size_s;
@@ -38,10 +39,10 @@ fn first_bytes(path: &Path) -> Option<[u8; 16]> {
 }
 
 /// An open file.
-#[derive(Debug)]
 pub struct MdfFile {
     source: SourceFile,
     reader: Reader,
+    recording: Arc<Recording>,
     /// Its channels other than times.
     channels: Vec<LogChannel>,
     /// Data group, channel group and index in it, of each channel.
@@ -51,15 +52,6 @@ pub struct MdfFile {
 enum Reader {
     V4(Box<Mf4File>),
     V3(Box<Mdf3File>),
-}
-
-impl std::fmt::Debug for Reader {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::V4(_) => "MDF 4",
-            Self::V3(_) => "MDF 3",
-        })
-    }
 }
 
 impl MdfFile {
@@ -72,19 +64,21 @@ impl MdfFile {
         let version = first_bytes(path).unwrap_or_default();
         let is_v4 = version[VERSION].starts_with(b"4");
         let fault = |error: falcon_mdf::Mf4Error| unreadable(&source, "", &error);
+        let recording = Recording::open(path, is_v4).map_err(fault)?;
         let (reader, placed) = if is_v4 {
-            let file = Mf4File::open(path).map_err(fault)?;
-            let placed = channels_of_v4(&file, path);
+            let file = Mf4File::from_source(recording.clone()).map_err(fault)?;
+            let placed = channels_of_v4(&file, &recording);
             (Reader::V4(Box::new(file)), placed)
         } else {
-            let file = Mdf3File::open(path).map_err(fault)?;
-            let placed = channels_of_v3(&file);
+            let file = Mdf3File::from_source(recording.clone()).map_err(fault)?;
+            let placed = channels_of_v3(&file, &recording);
             (Reader::V3(Box::new(file)), placed)
         };
         let (channels, places) = tell_apart(placed).into_iter().unzip();
         Ok(Self {
             source,
             reader,
+            recording,
             channels,
             places,
         })
@@ -98,6 +92,14 @@ impl ChannelFile for MdfFile {
 
     fn channels(&self) -> &[LogChannel] {
         &self.channels
+    }
+
+    fn is_cut_off(&self) -> bool {
+        self.recording.is_cut_off
+    }
+
+    fn is_shortened(&self, channel: usize) -> bool {
+        self.recording.shortened.contains(&self.places[channel][0])
     }
 
     /// The samples of a channel; NaN where marked as invalid.
@@ -149,8 +151,13 @@ struct Placed {
     labels: [String; 3],
 }
 
-fn channels_of_v4(file: &Mf4File, path: &Path) -> Vec<Placed> {
-    let mut units = UnitReader::open(path);
+/// Why a channel without samples cannot be used; `None` if it only was not sent.
+fn lost(samples: u64, recording: &Recording) -> Option<&'static str> {
+    let is_lost = samples == 0 && recording.is_cut_off;
+    is_lost.then_some("the file is cut off before its samples")
+}
+
+fn channels_of_v4(file: &Mf4File, recording: &Recording) -> Vec<Placed> {
     let mut channels = Vec::new();
     let mut number = 0;
     for (data_group, data) in file.data_groups().iter().enumerate() {
@@ -162,12 +169,12 @@ fn channels_of_v4(file: &Mf4File, path: &Path) -> Vec<Placed> {
                 }
                 let found = LogChannel {
                     name: channel.name.clone(),
-                    unit: unit(&channel.unit).or_else(|| units.of_conversion(channel)),
+                    unit: unit(&channel.unit).or_else(|| unit_of_conversion(recording, channel)),
                     samples: group.sample_count as usize,
                     fault: match channel.value_kind().is_numeric() {
                         false => Some("it has texts, or values converted to texts"),
                         true if channel.is_array() => Some("it has arrays"),
-                        true => None,
+                        true => lost(group.sample_count, recording),
                     },
                 };
                 let source = channel.source.as_ref().or(group.source.as_ref());
@@ -190,7 +197,7 @@ fn channels_of_v4(file: &Mf4File, path: &Path) -> Vec<Placed> {
     channels
 }
 
-fn channels_of_v3(file: &Mdf3File) -> Vec<Placed> {
+fn channels_of_v3(file: &Mdf3File, recording: &Recording) -> Vec<Placed> {
     let mut channels = Vec::new();
     let mut number = 0;
     for (data_group, data) in file.data_groups().iter().enumerate() {
@@ -206,7 +213,7 @@ fn channels_of_v3(file: &Mdf3File) -> Vec<Placed> {
                         name: channel.name.clone(),
                         unit: unit(&channel.unit),
                         samples: group.cycle_count as usize,
-                        fault: None,
+                        fault: lost(group.cycle_count.into(), recording),
                     },
                     place: [data_group, group_index, index],
                     labels: [comment.to_owned(), String::new(), format!("group {number}")],

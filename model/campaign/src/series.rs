@@ -36,6 +36,17 @@ pub fn rises(values: &[f64]) -> bool {
 }
 
 impl Series {
+    /// The samples up to the last one that is not later than `end_s`.
+    pub fn until(&self, end_s: f64) -> Self {
+        let last = self.times_s.iter().rposition(|time_s| *time_s <= end_s);
+        let count = last.map_or(0, |last| last + 1);
+        Self {
+            times_s: self.times_s[..count].to_vec(),
+            values: self.values[..count].to_vec(),
+            bytes: self.bytes[..count].to_vec(),
+        }
+    }
+
     /// Adds a sample; duplicates are merged.
     pub fn push(&mut self, time_s: f64, value: f64, byte: usize) {
         if self.times_s.last() == Some(&time_s) && self.values.last() == Some(&value) {

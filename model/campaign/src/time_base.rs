@@ -63,14 +63,21 @@ pub fn is_time_name(name: &str) -> bool {
     TIMES.iter().any(|known| is_in(known, &words)) || TIMES.contains(&&*name.to_lowercase())
 }
 
-/// The words of a name in lower case; `LiftCurrent` has two.
+/// The words of a name in lower case; `LiftCurrent` and `ILift` have two.
 #[must_use]
 pub fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
-    let mut was_small = false;
+    let (mut was_small, mut was_large) = (false, false);
     for letter in name.chars() {
         let begins = !letter.is_alphabetic() || (letter.is_uppercase() && was_small);
-        was_small = letter.is_lowercase();
+        if was_large
+            && letter.is_lowercase()
+            && let Some(first) = words.last_mut().and_then(String::pop)
+        {
+            // The last one of several large letters begins a word.
+            words.push(first.into());
+        }
+        (was_small, was_large) = (letter.is_lowercase(), letter.is_uppercase());
         if begins {
             words.push(String::new());
         }
@@ -227,6 +234,8 @@ mod tests {
         ];
         assert_eq!(bases(&by_number), [Some(0), Some(1), Some(0), Some(1)]);
         assert_eq!(bases(&[seen("p", 20, false)]), [None]);
+        assert_eq!(words("LiftCurrent"), ["lift", "current"]);
+        assert_eq!(words("ILift pCyl"), ["i", "lift", "p", "cyl"]);
         assert!(
             is_time_name("Zeit")
                 && is_time_name("t")

@@ -4,14 +4,16 @@ use std::path::Path;
 
 use falcon_mdf::Mf4File;
 use hitch_input::source_file::SourceFile;
+use hitch_mdf_file::Recording;
 
 use crate::CampaignError;
 use crate::bus_log::frame::{Frame, FrameSink, Id};
+use crate::bus_log::line::Ending;
 use crate::mdf_log::is_mdf;
 
 /// Whether a file contains frames, and no channels beside them.
 pub fn is_one(path: &Path) -> bool {
-    let Some(file) = is_mdf(path).then(|| Mf4File::open(path).ok()).flatten() else {
+    let Some((file, _)) = is_mdf(path).then(|| open(path).ok()).flatten() else {
         return false;
     };
     let frames = file.can_frame_groups().into_iter();
@@ -25,16 +27,25 @@ pub fn is_one(path: &Path) -> bool {
     !frames.is_empty() && filled.all(|group| group.is_bus_event() || is_frames(group))
 }
 
+fn open(path: &Path) -> falcon_mdf::Result<(Mf4File, Ending)> {
+    let recording = Recording::open(path, true)?;
+    let ending = match recording.is_cut_off {
+        true => Ending::CutOff,
+        false => Ending::Whole,
+    };
+    Ok((Mf4File::from_source(recording)?, ending))
+}
+
 /// Passes every data frame that `sink` wants to it, in the order of time.
 ///
 /// # Errors
 /// The file cannot be read.
-pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), CampaignError> {
+pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<Ending, CampaignError> {
     let fault = |error: falcon_mdf::Mf4Error| {
         let mend = "export it as .asc or .blf with the logger's tool";
         source.error(format!("cannot be read as MDF: {error}"), mend)
     };
-    let file = Mf4File::open(&source.path).map_err(fault)?;
+    let (file, ending) = open(&source.path).map_err(fault)?;
     let mut groups = Vec::new();
     for group in file.can_frame_groups() {
         groups.push(file.can_frames(group).map_err(fault)?);
@@ -61,5 +72,5 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), Campaig
             byte: 0,
         })?;
     }
-    Ok(())
+    Ok(ending)
 }

@@ -153,7 +153,7 @@ fn read_frames(
         Format::Candump => candump::read(source, sink),
         Format::Asc => asc::read(source, sink),
         Format::Blf => blf::read(source, sink),
-        Format::Mdf => mdf_frames::read(source, sink).map(|()| Ending::Whole),
+        Format::Mdf => mdf_frames::read(source, sink),
         Format::Table => frame_table::read(source, sink).map(|()| Ending::Whole),
     }
 }

@@ -193,12 +193,14 @@ fn split(cell: &str) -> Option<(&str, &str)> {
     Some((date.trim(), &cell[hour.len()..]))
 }
 
-/// Reads a date with a time of day, or a time of day alone.
+/// Reads a date with a time of day, a time of day alone, or a number of days before it, as pandas writes a duration.
 fn parse(cell: &str, order: DateOrder) -> Option<Instant> {
     let (date, clock) = split(cell)?;
-    let day = match date {
-        "" => None,
-        date => Some(day_of(date, order)?),
+    let days = date.strip_suffix("days").map(str::trim_end);
+    let day = match (date, days) {
+        ("", _) => None,
+        (_, Some(days)) => Some(f64::from(days.parse::<i32>().ok()?)),
+        (date, None) => Some(day_of(date, order)?),
     };
     let of_day_s = of_day_s(clock)?;
     Some(Instant { day, of_day_s })
@@ -279,6 +281,16 @@ mod tests {
             let got = got.unwrap_or_else(|| panic!("{cells:?}"));
             assert!((got - expected_s).abs() < 1e-6, "{cells:?}: {got}");
         }
+    }
+
+    #[test]
+    fn durations_begin_with_days() {
+        near(
+            &["0 days 00:00:00", "0 days 00:01:00.020000"],
+            &[0.0, 60.02],
+        );
+        near(&["0 days 23:59:59.5", "1 days 00:00:00"], &[0.0, 0.5]);
+        assert_eq!(read(&["9 dogs 00:00:00", "days 00:00:00"]), [None, None]);
     }
 
     #[test]

@@ -162,7 +162,10 @@ impl Header {
 
     /// The header in this row, with the units below it.
     pub fn at(text: &str, mark: u8, byte: usize, row: &StringRecord) -> Self {
-        let mut cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
+        // The mark of a comment is no cell, though spaces separate it from the names.
+        let is_mark = mark == b' ' && row.get(0) == Some("#");
+        let names = row.iter().skip(is_mark.into());
+        let mut cells: Vec<HeaderCell> = names.map(HeaderCell::new).collect();
         let mut below = rows(text, byte, mark)
             .skip(1)
             .take(HEADER_WITHIN)

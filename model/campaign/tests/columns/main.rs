@@ -11,6 +11,7 @@ use proptest::prelude::*;
 use tempfile::TempDir;
 
 mod clock;
+mod cut_off;
 mod groups;
 mod shape;
 

@@ -56,6 +56,12 @@ fn rows_have_the_cells_of_the_header_or_names() {
 }
 
 #[test]
+fn a_header_may_stand_in_a_comment_of_a_table_with_spaces() {
+    let text = table("# t up down p phi", " ", plain);
+    assert_same("NumPy", &loaded("bench.csv", text.as_bytes(), PLAIN), 1e-12);
+}
+
+#[test]
 fn each_column_is_read_at_its_own_times() {
     let own = samples();
     let mut text = "t,up,down,phi,t slow,p\n".to_owned();

@@ -2,7 +2,7 @@
 
 use hitch_campaign::{Bench, Run};
 use hitch_plant::simulation::simulate;
-use hitch_plant::{Channel, Currents, HitchRig, Model, Rig};
+use hitch_plant::{Channel, Currents, Model, Rig};
 
 /// Time at rest before the first current rises, s, so that the run starts from an idle plant.
 const REST_S: f64 = 0.5;
@@ -148,16 +148,12 @@ impl RunPlan {
     /// The rig of the run.
     #[must_use]
     pub fn rig(&self, model: &Model) -> Rig {
-        match self.stand {
-            Stand::Hitch { load_kg, start } => {
-                let (low_rad, high_rad) = model.linkage().swing_rad();
-                Rig::Hitch(HitchRig {
-                    load_kg,
-                    start_angle_rad: low_rad + start * (high_rad - low_rad),
-                })
-            }
-            Stand::Flow { port_pressure_bar } => Bench::Flow { port_pressure_bar }.rig(0.0),
-        }
+        let (low_rad, high_rad) = model.linkage().swing_rad();
+        let start = match self.stand {
+            Stand::Hitch { start, .. } => start,
+            Stand::Flow { .. } => 0.0,
+        };
+        self.bench().rig(low_rad + start * (high_rad - low_rad))
     }
 
     /// Time stamps of its samples, s, at a rate, Hz.
