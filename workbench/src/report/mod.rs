@@ -5,6 +5,7 @@ mod columns;
 pub mod comparison_page;
 pub mod diagnosis_page;
 mod drawn;
+mod envelope;
 mod error_map;
 pub mod explanation_page;
 pub mod field_page;
