@@ -1,5 +1,6 @@
 //! Reports: self-contained HTML files that need no network. Without scripts, and in print, they show static pictures and
 //! tables; on a screen, the plots of the page of `hitch serve`.
+pub mod changes_page;
 pub mod chart;
 mod columns;
 pub mod comparison_page;
