@@ -42,15 +42,28 @@ pub fn plots(html: &str) -> Vec<serde_json::Value> {
 #[must_use]
 pub fn samples(column: &serde_json::Value) -> Vec<f64> {
     let step = column["step"].as_f64().expect("a step");
-    let mut sum = 0.0;
-    let differences = column["differences"].as_array().expect("differences");
-    let sample = |difference: &serde_json::Value| {
-        difference.as_f64().map_or(f64::NAN, |difference| {
-            sum += difference;
-            step * sum
-        })
+    let text = column["differences"].as_str().expect("differences");
+    let digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let (mut sum, mut number, mut shift) = (0_i64, 0_i64, 0);
+    let sample = |letter: char| {
+        if letter == '-' {
+            return Some(f64::NAN);
+        }
+        let digit = digits.find(letter).expect("a digit of base 64") as i64;
+        number |= (digit & 31) << shift;
+        shift += 5;
+        if digit > 31 {
+            return None;
+        }
+        sum += if number & 1 == 1 {
+            -(number >> 1)
+        } else {
+            number >> 1
+        };
+        (number, shift) = (0, 0);
+        Some(step * sum as f64)
     };
-    differences.iter().map(sample).collect()
+    text.chars().filter_map(sample).collect()
 }
 
 /// Checks that a report loads nothing, so that it opens offline: it forbids the browser to load anything, and has no

@@ -17,6 +17,7 @@ use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
+use crate::report::changes_page;
 use crate::search_args::SearchArgs;
 use crate::text::colour::by_sigma;
 use crate::text::wrapped;
@@ -37,6 +38,9 @@ pub struct Args {
     /// Write the model of the new campaign to this file
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
+    /// Write a report to this file: self-contained HTML
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
     #[command(flatten)]
     search: SearchArgs,
     #[command(flatten)]
@@ -61,6 +65,7 @@ pub struct Changes {
 pub fn run(args: &Args) -> Result<(), Error> {
     let others = [
         ("--json", args.json.target().is_some()),
+        ("--report", args.report.is_some()),
         ("--out", args.out.is_some()),
     ];
     match args.fleet.single(&args.new, &others)? {
@@ -95,7 +100,12 @@ fn one(args: &Args, new: &Path) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.baseline);
     inputs.extend(campaign_files(new));
     inputs.push(args.model.file());
-    let outputs = Outputs::check([args.out.as_deref(), args.json.target()], &inputs)?;
+    let wanted = [
+        args.out.as_deref(),
+        args.report.as_deref(),
+        args.json.target(),
+    ];
+    let outputs = Outputs::check(wanted, &inputs)?;
     let model = args.model.load()?;
     let load = |folder| Campaign::load_with(folder, model.linkage());
     let [baseline, new] = [args.baseline.as_path(), new].map(load);
@@ -110,6 +120,10 @@ fn one(args: &Args, new: &Path) -> Result<(), Error> {
             path,
             hitch_model_file::to_toml(&new.rebuilt(output::stem(path))).as_bytes(),
         )?;
+    }
+    if let Some(path) = &args.report {
+        let page = changes_page::page(&changes.baseline, &new);
+        output::write_file(path, page.as_bytes())?;
     }
     outputs.tell(&args.json, &changes, || changes.to_string())
 }
@@ -152,18 +166,8 @@ impl Adopted {
 impl std::fmt::Display for Changes {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (baseline, new) = (&self.baseline, &self.new);
-        let names: Vec<String> = baseline.steps.iter().map(|step| step.name()).collect();
-        let added = match names.is_empty() {
-            true => String::new(),
-            false => format!(" with {}", names.join(", ")),
-        };
         let sigma = |error: f64| by_sigma(&format!("{error:.2}"), error);
-        let line = format!(
-            "Baseline {}: model {}{added}, error {} sigma",
-            baseline.head.campaign,
-            baseline.head.model,
-            sigma(baseline.head.error_after)
-        );
+        let line = baseline.as_reference(&sigma(baseline.head.error_after));
         writeln!(f, "{}", wrapped(&line))?;
         let line = format!(
             "New {}: error {} -> {} sigma",
@@ -173,7 +177,7 @@ impl std::fmt::Display for Changes {
         );
         writeln!(f, "{}", wrapped(&line))?;
         if new.steps.is_empty() {
-            return writeln!(f, "\nNo change is detectable with these campaigns.");
+            return writeln!(f, "\n{}", Explanation::UNCHANGED);
         }
         writeln!(f, "\nChanges:")?;
         let mut steps = new.steps.iter().enumerate();

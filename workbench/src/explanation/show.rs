@@ -97,6 +97,22 @@ impl fmt::Display for Alternative {
 }
 
 impl Explanation {
+    /// What is said of a comparison of two campaigns that shows no change.
+    pub const UNCHANGED: &str = "No change is detectable with these campaigns.";
+
+    /// The campaign and the explained model as the reference of a comparison, with its error in sigma as it is shown.
+    pub fn as_reference(&self, error: &str) -> String {
+        let names: Vec<String> = self.steps.iter().map(|step| step.name()).collect();
+        let added = match names.is_empty() {
+            true => String::new(),
+            false => format!(" with {}", names.join(", ")),
+        };
+        let Head {
+            campaign, model, ..
+        } = &self.head;
+        format!("Baseline {campaign}: model {model}{added}, error {error} sigma")
+    }
+
     /// Title of the list of effects that are not detectable, without colon.
     pub fn blind_spots(&self) -> &'static str {
         "Effects that are not detectable in this campaign at their typical size"
@@ -283,11 +299,11 @@ impl Step {
     /// Why an effect that reduces the error is not named, as a sentence.
     pub fn doubt(&self) -> String {
         format!(
-            "Not named: {}, {}. The error with it is {:.2} sigma, but its probability is {:.2}.",
+            "Not named: {}, {}. The error with it is {:.2} sigma, but it is {}.",
             self.name(),
             self.sizes(),
             self.error_after,
-            self.confidence
+            words::probable(self.confidence)
         )
     }
 
@@ -305,11 +321,11 @@ impl fmt::Display for Step {
         writeln!(f, "{}", indented(&head, DETAIL).trim_start())?;
         let mut detail = |line: &str| writeln!(f, "{}", indented(line, DETAIL));
         detail(&format!(
-            "error {:.2} -> {}, {}; confidence {:.2}, detectability {:.2}",
+            "error {:.2} -> {}, {}; confidence: {}; detectability {:.2}",
             self.error_before,
             by_sigma(&format!("{:.2}", self.error_after), self.error_after),
             self.on_held_out(),
-            self.confidence,
+            words::probable(self.confidence),
             self.detectability
         ))?;
         if plausibility(self.explained_share) < 0.5 {

@@ -13,8 +13,8 @@ const TOP_PX: f64 = 10.0;
 const BOTTOM_PX: f64 = 38.0;
 const X_TICKS: usize = 6;
 const Y_TICKS: usize = 4;
-/// Number of columns to which a long log is reduced; each keeps its minimum and maximum, so no peak is lost.
-const BUCKETS: usize = 250;
+/// Number of columns to which a long log is reduced, three pixels each; each keeps its minimum and maximum, so no peak is lost.
+const BUCKETS: usize = 150;
 
 /// Style of a line; the colours are those of the page of `hitch serve`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -157,18 +157,23 @@ impl Chart<'_> {
     fn axes(&self, x: &Scale, y: &Scale) -> Markup {
         let (right, base) = (WIDTH_PX - RIGHT_PX, HEIGHT_PX - BOTTOM_PX);
         let middle = (TOP_PX + base) / 2.0;
+        let grid = y.ticks(Y_TICKS).into_iter();
+        let grid: String = grid
+            .map(|tick| format!("M{LEFT_PX} {}H{right}", px(y.px(tick))))
+            .collect();
+        let marks = x.ticks(X_TICKS).into_iter();
+        let marks: String = marks
+            .map(|tick| format!("M{} {base}v4", px(x.px(tick))))
+            .collect();
         html! {
-            @for tick in y.ticks(Y_TICKS) { @let at = px(y.px(tick));
-                line.grid-line x1=(LEFT_PX) x2=(right) y1=(at) y2=(at) {}
-                text.soft x=(LEFT_PX - 6.0) y=(at) text-anchor="end" dominant-baseline="middle" {
-                    (y.label(tick, Y_TICKS))
-                }
-            }
-            @for tick in x.ticks(X_TICKS) { @let at = px(x.px(tick));
-                line.axis x1=(at) x2=(at) y1=(base) y2=(base + 4.0) {}
-                text.soft x=(at) y=(base + 17.0) text-anchor="middle" { (x.label(tick, X_TICKS)) }
-            }
-            line.axis x1=(LEFT_PX) x2=(right) y1=(base) y2=(base) {}
+            path.grid-line d=(grid) {}
+            path.axis d=(format!("M{LEFT_PX} {base}H{right}{marks}")) {}
+            g.soft text-anchor="end" dominant-baseline="middle" { @for tick in y.ticks(Y_TICKS) {
+                text x=(LEFT_PX - 6.0) y=(px(y.px(tick))) { (y.label(tick, Y_TICKS)) }
+            } }
+            g.soft text-anchor="middle" { @for tick in x.ticks(X_TICKS) {
+                text x=(px(x.px(tick))) y=(base + 17.0) { (x.label(tick, X_TICKS)) }
+            } }
             text x=((LEFT_PX + right) / 2.0) y=(HEIGHT_PX - 4.0) text-anchor="middle" { (self.x_title) }
             text x="12" y=(middle) text-anchor="middle" transform=(format!("rotate(-90 12 {middle})")) {
                 (self.y_title)
@@ -206,29 +211,61 @@ fn area(band: &Band<'_>, x: &Scale, y: &Scale) -> String {
     }
 }
 
-/// The line as SVG path data; interrupted at dropouts.
+/// The line as SVG path data in whole pixels, relative to the point before; interrupted at dropouts. Points on the straight
+/// line through their neighbours are left out.
 fn path(line: &Line<'_>, x: &Scale, y: &Scale) -> String {
     let mut data = String::new();
-    let mut pen_down = false;
+    let mut piece: Vec<(i32, i32)> = Vec::new();
     for i in thinned(line.y) {
         let (Some(at), value) = (line.x.get(i), line.y[i]) else {
             break;
         };
         if !value.is_finite() {
-            pen_down = false;
+            push_piece(&mut data, &piece);
+            piece.clear();
             continue;
         }
-        // Writing to a string cannot fail.
-        let _ = write!(
-            data,
-            "{}{} {}",
-            if pen_down { "L" } else { "M" },
-            px(x.px(*at)),
-            px(y.px(value))
-        );
-        pen_down = true;
+        let point = (x.px(*at).round() as i32, y.px(value).round() as i32);
+        if let [.., before, last] = piece[..]
+            && goes_on(before, last, point)
+        {
+            piece.pop();
+        }
+        if piece.last() != Some(&point) {
+            piece.push(point);
+        }
     }
+    push_piece(&mut data, &piece);
     data
+}
+
+/// Whether the way from `before` to `last` goes on to `point` in the same direction.
+fn goes_on(before: (i32, i32), last: (i32, i32), point: (i32, i32)) -> bool {
+    let first = (last.0 - before.0, last.1 - before.1);
+    let second = (point.0 - last.0, point.1 - last.1);
+    let (cross, along) = (
+        first.0 * second.1 - first.1 * second.0,
+        first.0 * second.0 + first.1 * second.1,
+    );
+    cross == 0 && along >= 0
+}
+
+/// Appends a line without interruption.
+fn push_piece(data: &mut String, piece: &[(i32, i32)]) {
+    let Some(first) = piece.first() else { return };
+    // Writing to a string cannot fail.
+    let _ = write!(data, "M{} {}", first.0, first.1);
+    for (place, pair) in piece.windows(2).enumerate() {
+        let (right, down) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+        // A sign separates numbers too.
+        let start = match (place, right < 0) {
+            (0, _) => "l",
+            (_, true) => "",
+            (_, false) => " ",
+        };
+        let between = if down < 0 { "" } else { " " };
+        let _ = write!(data, "{start}{right}{between}{down}");
+    }
 }
 
 /// The drawn samples: all of a short log; of a long one, the minimum and the maximum of each bucket and the first
@@ -284,7 +321,25 @@ mod tests {
             Scale::new((0.0, 3.0), (0.0, 30.0)),
             Scale::new((0.0, 1.0), (10.0, 0.0)),
         );
-        assert_eq!(path(&line, &sx, &sy), "M0 10L10 0M30 0");
+        assert_eq!(path(&line, &sx, &sy), "M0 10l10-10M30 0");
+    }
+
+    #[test]
+    fn a_straight_line_has_two_points_and_a_peak_stays() {
+        let x: Vec<f64> = (0..100).map(f64::from).collect();
+        let mut y = vec![0.0; 100];
+        y[40] = 1.0;
+        let line = Line {
+            name: "flow",
+            stroke: Stroke::After,
+            x: &x,
+            y: &y,
+        };
+        let (sx, sy) = (
+            Scale::new((0.0, 99.0), (0.0, 99.0)),
+            Scale::new((0.0, 1.0), (10.0, 0.0)),
+        );
+        assert_eq!(path(&line, &sx, &sy), "M0 10l39 0 1-10 1 10 58 0");
     }
 
     #[test]

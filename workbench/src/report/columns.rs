@@ -6,11 +6,21 @@ use super::scale::extent;
 
 /// Resolution of time stamps, s.
 pub const TIME_S: f64 = 1e-4;
-/// Share of the extent that is resolved: four digits.
+/// Share of the extent that is resolved without a wanted resolution: four digits.
 const SHARE: f64 = 1e-4;
+/// Share of the extent that is resolved at most: a tenth of a pixel of a row of a plot, which is 125 px high.
+const OF_ROW: f64 = 1e-3;
 
-/// Samples as integers in steps of a power of ten, at most `resolution` (in the unit of the values), each as difference to
-/// the one before; `null` where missing. An invalid resolution is replaced by a ten thousandth of the extent.
+/// The digits of base 64 (RFC 4648).
+const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+/// The mark of a missing sample.
+const MISSING: char = '-';
+
+/// Samples as integers in steps of 1, 2 or 5 times a power of ten, at most `resolution` (in the unit of the values), each as difference to
+/// the one before. An invalid resolution is replaced by a ten thousandth of the extent.
+///
+/// The differences are one text: variable-length quantities in base 64, as in the source maps of ECMA-426. A missing sample
+/// is `-`.
 pub fn column(values: &[f64], resolution: f64) -> Value {
     let (low, high) = extent(values.iter().copied()).unwrap_or((0.0, 0.0));
     let least = SHARE * (high - low).max(SHARE * high.abs().max(low.abs()));
@@ -19,20 +29,49 @@ pub fn column(values: &[f64], resolution: f64) -> Value {
         false => least,
     };
     let step = match wanted > 0.0 {
-        true => 10_f64.powi(wanted.log10().floor() as i32),
+        true => round_down(wanted),
         false => 1.0,
     };
     let mut last = 0_i64;
-    let difference = |value: &f64| {
-        value.is_finite().then(|| {
-            let number = (value / step).round() as i64;
-            let difference = number.saturating_sub(last);
-            last = number;
-            difference
-        })
-    };
-    let differences: Vec<Option<i64>> = values.iter().map(difference).collect();
+    let mut differences = String::with_capacity(2 * values.len());
+    for value in values {
+        if !value.is_finite() {
+            differences.push(MISSING);
+            continue;
+        }
+        let number = (value / step).round() as i64;
+        push(&mut differences, number.saturating_sub(last));
+        last = number;
+    }
     json!({ "step": step, "differences": differences })
+}
+
+/// Samples of a signal that is plotted in a row: `resolution` as in [`column`], but not finer than a plot shows.
+pub fn plotted_column(values: &[f64], resolution: f64) -> Value {
+    let (low, high) = extent(values.iter().copied()).unwrap_or((0.0, 0.0));
+    column(values, resolution.max(OF_ROW * (high - low)))
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above a positive number.
+fn round_down(number: f64) -> f64 {
+    let power = 10_f64.powi(number.log10().floor() as i32);
+    let steps = [5.0, 2.0].map(|factor| factor * power);
+    let step = steps.into_iter().find(|step| *step <= number);
+    step.unwrap_or(power)
+}
+
+/// Appends a number: five bits a digit, the lowest first, of which the first is the sign; the sixth says that digits follow.
+fn push(text: &mut String, number: i64) {
+    let mut rest = (i128::from(number.unsigned_abs()) << 1) | i128::from(number < 0);
+    loop {
+        let low = (rest & 31) as usize;
+        rest >>= 5;
+        let follows = usize::from(rest > 0) << 5;
+        text.push(char::from(DIGITS[low | follows]));
+        if rest == 0 {
+            return;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -42,13 +81,27 @@ mod tests {
     /// As the script of the report does.
     fn decoded(column: &Value) -> Vec<Option<f64>> {
         let step = column["step"].as_f64().unwrap();
-        let mut sum = 0.0;
-        let differences = column["differences"].as_array().unwrap().iter();
-        let decoded = differences.map(|difference| {
-            sum += difference.as_f64()?;
-            Some(sum * step)
-        });
-        decoded.collect()
+        let (mut sum, mut number, mut shift) = (0_i128, 0_i128, 0);
+        let mut decoded = Vec::new();
+        for letter in column["differences"].as_str().unwrap().bytes() {
+            if char::from(letter) == MISSING {
+                decoded.push(None);
+                continue;
+            }
+            let digit = DIGITS.iter().position(|one| *one == letter).unwrap() as i128;
+            number |= (digit & 31) << shift;
+            shift += 5;
+            if digit < 32 {
+                sum += if number & 1 == 1 {
+                    -(number >> 1)
+                } else {
+                    number >> 1
+                };
+                decoded.push(Some(sum as f64 * step));
+                (number, shift) = (0, 0);
+            }
+        }
+        decoded
     }
 
     #[test]
@@ -57,7 +110,25 @@ mod tests {
             .map(|i| 60.0 + 20.0 * (f64::from(i) * 0.1).sin())
             .collect();
         for (value, kept) in values.iter().zip(decoded(&column(&values, 0.02))) {
-            assert!((value - kept.unwrap()).abs() <= 0.0051);
+            assert!((value - kept.unwrap()).abs() <= 0.0101);
+        }
+    }
+
+    #[test]
+    fn differences_are_those_of_source_maps() {
+        // Examples of the format: 0, 1, -1, 15, -15, 16, 1200.
+        for (number, text) in [
+            (0, "A"),
+            (1, "C"),
+            (-1, "D"),
+            (15, "e"),
+            (-15, "f"),
+            (16, "gB"),
+            (1200, "grC"),
+        ] {
+            let mut found = String::new();
+            push(&mut found, number);
+            assert_eq!(found, text, "{number}");
         }
     }
 
@@ -76,8 +147,10 @@ mod tests {
             (&[f64::NAN], -1.0),
             (&[1e300, -1e300], 1e-3),
         ] {
-            let step = column(values, resolution)["step"].as_f64().unwrap();
+            let column = column(values, resolution);
+            let step = column["step"].as_f64().unwrap();
             assert!(step.is_finite() && step > 0.0, "{values:?}");
+            assert_eq!(decoded(&column).len(), values.len());
         }
         let kept = decoded(&column(&[5.0, 5.0], 0.0));
         assert!((kept[0].unwrap() - 5.0).abs() < 1e-3, "{kept:?}");

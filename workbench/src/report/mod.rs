@@ -1,10 +1,12 @@
 //! Reports: self-contained HTML files that need no network. Without scripts, and in print, they show static pictures and
 //! tables; on a screen, the plots of the page of `hitch serve`.
+pub mod changes_page;
 pub mod chart;
 mod columns;
 pub mod comparison_page;
 pub mod diagnosis_page;
 mod drawn;
+mod envelope;
 mod error_map;
 pub mod explanation_page;
 pub mod field_page;

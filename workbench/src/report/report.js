@@ -34,14 +34,32 @@ async function show(plotted, place) {
  * @param {HTMLElement} parent */
 function read(parent) {
   const text = parent.querySelector('script[type="application/json"]')?.textContent ?? "null";
-  return JSON.parse(text, (_, value) => (value?.differences ? samples(value) : value));
+  return JSON.parse(text, (_, value) => (typeof value?.differences === "string" ? samples(value) : value));
 }
 
-/** Samples from their differences.
- * @param {{step: number, differences: (number | null)[]}} column */
+/** The digits of base 64. */
+const DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+/** Samples from their differences: variable-length quantities in base 64, as in source maps; "-" where missing.
+ * @param {{step: number, differences: string}} column */
 function samples({ step, differences }) {
-  let sum = 0;
-  return differences.map((difference) => (difference === null ? null : (sum += difference) * step));
+  /** @type {(number | null)[]} */
+  const values = [];
+  let sum = 0, number = 0, place = 1;
+  for (const letter of differences) {
+    if (letter === "-") {
+      values.push(null);
+      continue;
+    }
+    const digit = DIGITS.indexOf(letter);
+    number += (digit & 31) * place;
+    place *= 32;
+    if (digit > 31) continue;
+    sum += number % 2 ? -(number - 1) / 2 : number / 2;
+    values.push(sum * step);
+    [number, place] = [0, 1];
+  }
+  return values;
 }
 
 /** The map of a model.

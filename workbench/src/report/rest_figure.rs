@@ -99,6 +99,7 @@ mod tests {
         };
         let text = picture(&profile).into_string();
         assert!(text.contains("rocker_angle_deg 45 to 65, near the bottom while lowering"));
-        assert_eq!(text.matches("<path").count(), 2);
+        assert_eq!(text.matches("<path class=\"band").count(), 1);
+        assert_eq!(text.matches("<path class=\"line").count(), 1);
     }
 }

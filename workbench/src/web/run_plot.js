@@ -8,6 +8,9 @@ const SIGNAL = 125, RESIDUAL = 70, CURRENTS = 80;
 /** Least distance of ticks, px. */
 const TICK = 16;
 
+/** Size of all texts of a plot, px: the library would write the titles of axes larger. */
+const TEXT = 12;
+
 /** Fixed heights, px. */
 const GAP = 22, BOTTOM = 42, TOP = 24, LEGEND = 64;
 
@@ -206,7 +209,7 @@ function figure(view, leading, height) {
     layout[name] = ordinate(row.unit, low, high, Math.max(2, Math.min(row.ticks ?? 3, Math.round(row.height / TICK))));
     if (row.band) Object.assign(/** @type {PlotAxis} */ (layout[name]), { range: ends(row.lines) });
     layout.annotations.push({ text: row.title, x: 0, xref: "paper", xanchor: "left", y: high, yref: "paper",
-      yanchor: "bottom", showarrow: false, font: { size: 12, color: colour("ink") } });
+      yanchor: "bottom", showarrow: false, font: { size: TEXT, color: colour("ink") } });
     if (row.band) layout.shapes.push({ type: "rect", xref: "paper", yref: axis, x0: 0, x1: 1, y0: -BAND, y1: BAND,
       fillcolor: colour("band"), opacity: 0.35, line: { width: 0 }, layer: "below" });
     for (const line of row.lines) {
@@ -323,13 +326,13 @@ export function frame() {
   const legend = narrow ? { y: 0, yref: "container", yanchor: "bottom" } : { y: 1, yanchor: "bottom" };
   return {
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: colour("paper"),
-    font: { color: colour("ink"), size: 12 }, margin: { l: 52, r: 12, t: TOP, b: narrow ? BOTTOM + LEGEND : BOTTOM },
+    font: { color: colour("ink"), size: TEXT }, margin: { l: 52, r: 12, t: TOP, b: narrow ? BOTTOM + LEGEND : BOTTOM },
     hovermode: "x unified", hoversubplots: "axis", dragmode: touch ? false : "zoom",
     hoverlabel: { bgcolor: colour("card"), font: { color: colour("ink") } },
     showlegend: true, legend: { orientation: "h", x: 0, xanchor: "left", ...legend },
     modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("soft"), activecolor: colour("ink") },
     shapes: [], annotations: [],
-    xaxis: { title: { text: "time, s" }, gridcolor: colour("line"), zeroline: false, showspikes: true, spikemode: "across",
+    xaxis: { title: { text: "time, s", font: { size: TEXT } }, gridcolor: colour("line"), zeroline: false, showspikes: true, spikemode: "across",
       spikesnap: "cursor", spikethickness: 1, spikecolor: colour("soft"), spikedash: "solid" },
   };
 }
@@ -340,6 +343,6 @@ export function frame() {
  * @param {number} high
  * @param {number} nticks */
 export function ordinate(unit, low, high, nticks) {
-  return { title: { text: unit, standoff: 4 }, domain: [Math.max(0, low), Math.min(1, high)], fixedrange: true,
+  return { title: { text: unit, standoff: 4, font: { size: TEXT } }, domain: [Math.max(0, low), Math.min(1, high)], fixedrange: true,
     gridcolor: colour("line"), zerolinecolor: colour("band"), nticks };
 }
