@@ -8,7 +8,7 @@ interface PlotAxis {
 }
 
 interface PlotLayout {
-  xaxis: PlotAxis & { title: { text: string; standoff?: number } };
+  xaxis: PlotAxis & { title: { text: string; standoff?: number; font?: { size: number } } };
   margin: { l: number; r: number; t: number; b: number };
   shapes: object[];
   annotations: object[];
