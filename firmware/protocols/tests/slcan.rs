@@ -5,6 +5,10 @@ use hitch_protocols::can::{ExtendedId, Frame, Id, StandardId};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
+/// What a host sends: an empty line, close, bit rate, open, questions, frames of each kind.
+const SESSION: &[u8] =
+    b"\rC\rS5\rO\rV\rN\rF\rT0CFE458089B47C8FF7DC0FFFF\rt07A1AB\rr07A3\rR1FFFFFFF0\rt07A0\r";
+
 fn completed_by(adapter: &mut Adapter, text: &str) -> Vec<Completed> {
     text.bytes()
         .filter_map(|byte| adapter.receive(byte))
@@ -133,5 +137,30 @@ proptest! {
         bytes.iter().for_each(|&byte| { adapter.receive(byte); });
         completed_by(&mut adapter, "\rO\r");
         prop_assert!(adapter.is_open());
+    }
+
+    /// A session of a real host with single bytes lost, changed or inserted: the line after it counts again, and the adapter never
+    /// answers more lines than it was sent.
+    #[test]
+    fn a_damaged_session_ends_with_the_line(
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..3_u8), 1..8)
+    ) {
+        let mut session = SESSION.to_vec();
+        for (place, byte, kind) in damage {
+            let at = place.index(session.len());
+            match kind {
+                0 => session[at] ^= 1 << (byte % 8),
+                1 => session.insert(at, byte),
+                _ => drop(session.remove(at)),
+            }
+        }
+        let mut adapter = Adapter::default();
+        let answers = session.iter().filter(|&&byte| adapter.receive(byte).is_some()).count();
+        prop_assert!(answers <= session.iter().filter(|&&byte| byte == b'\r').count());
+        completed_by(&mut adapter, "\rC\rS5\rO\r");
+        let heard = completed_by(&mut adapter, "t07A1AB\r");
+        prop_assert_eq!(heard[0].reply, b"z\r");
+        let frame = heard[0].frame.unwrap();
+        prop_assert_eq!(frame.data(), [0xAB]);
     }
 }
