@@ -32,13 +32,14 @@ fn tuning_makes_a_bad_calibration_better_and_writes_one_that_can_be_driven() {
     let said = text(&output.stdout);
     println!("{said}");
     assert!(output.status.success(), "{}", text(&output.stderr));
-    let ratio = |calibration: &str| {
-        summary(folder.path(), &["--calibration", calibration])["ratio_median"]
+    // The search lowers its cost, which weighs all figures; the slowest moves of the written calibration are driven again.
+    let slowest = |calibration: &str| {
+        summary(folder.path(), &["--calibration", calibration])["ratio_p95"]
             .as_f64()
             .unwrap()
     };
-    let (before, after) = (ratio("bad.toml"), ratio("tuned.toml"));
-    println!("median time ratio {before:.3} -> {after:.3}");
+    let (before, after) = (slowest("bad.toml"), slowest("tuned.toml"));
+    println!("time ratio, 95 %: {before:.3} -> {after:.3}");
     assert!(after <= before - 0.02, "{before} -> {after}");
     let costs: Vec<f64> = said
         .lines()
@@ -49,7 +50,7 @@ fn tuning_makes_a_bad_calibration_better_and_writes_one_that_can_be_driven() {
                 .collect()
         })
         .unwrap();
-    assert!(costs[1] < costs[0], "{costs:?}");
+    assert!(costs[1] < 0.9 * costs[0], "{costs:?}");
     assert_shows_both(&std::fs::read_to_string(folder.path().join("r.html")).unwrap());
 }
 
