@@ -104,7 +104,7 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
         calibration.sensors.angle_lag = Millisecond((lag_s * 1e3).round() as i32);
     }
     if let Some(offset_bar) = found(model, "pressure-sensor-offset") {
-        calibration.sensors.pressure_offset = MilliBar((offset_bar * 1e3).round() as i32);
+        calibration.hydraulics.pressure_offset = MilliBar((offset_bar * 1e3).round() as i32);
     }
     dynamics::adapt(model, &mut calibration);
     holding::adapt(model, &mut calibration);

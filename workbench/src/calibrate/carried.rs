@@ -51,7 +51,7 @@ const DESTINATIONS: &[Destination] = &[
     to(&["angle-sensor-lag"], &["sensors.angle_lag"], "a dead time, where the model has one"),
     to(&["angle-sensor-gain"], &["linkage", "position.lower_limit", "position.upper_limit"],
         "the scale of lever and displays: all angles are those that the sensor shows"),
-    to(&["pressure-sensor-offset"], &["sensors.pressure_offset"], ""),
+    to(&["pressure-sensor-offset"], &["hydraulics.pressure_offset"], ""),
     to(&["lowering-leakage"], &["hold.correction_memory"],
         "a leak that needs a correction in less than 1.5 s, or grows by half: the drift monitor reports it, repair the valve"),
     to(&["relief-override"], &[], "the relief pressure is that of the constants"),

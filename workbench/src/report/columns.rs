@@ -6,8 +6,8 @@ use super::scale::extent;
 
 /// Resolution of time stamps, s.
 pub const TIME_S: f64 = 1e-4;
-/// Share of the extent that is resolved without a wanted resolution: four digits.
-const SHARE: f64 = 1e-4;
+/// Share of the extent that is resolved without a wanted resolution: five digits.
+const SHARE: f64 = 1e-5;
 /// Share of the extent that is resolved at most: a tenth of a pixel of a row of a plot, which is 125 px high.
 const OF_ROW: f64 = 1e-3;
 
@@ -17,7 +17,7 @@ const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz
 const MISSING: char = '-';
 
 /// Samples as integers in steps of 1, 2 or 5 times a power of ten, at most `resolution` (in the unit of the values), each as difference to
-/// the one before. An invalid resolution is replaced by a ten thousandth of the extent.
+/// the one before. An invalid resolution is replaced by a hundred thousandth of the extent.
 ///
 /// The differences are one text: variable-length quantities in base 64, as in the source maps of ECMA-426. A missing sample
 /// is `-`.

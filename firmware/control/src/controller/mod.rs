@@ -187,6 +187,8 @@ impl Control {
             self.reference.sense(inputs, moves, &self.calibration);
         }
         let sensed = self.sensors.judge(inputs, &self.calibration.sensors);
+        let offset = self.calibration.hydraulics.pressure_offset;
+        let sensed = sensed.map(|sensed| sensed.without_offset(offset));
         if RideDamping::is_fitted(&self.calibration) {
             let pressure = sensed.ok().and_then(|sensed| sensed.cylinder_pressure);
             self.ride.sense(inputs, pressure, &self.calibration.ride);

@@ -20,6 +20,17 @@ pub struct Sensed {
     pub pump_pressure: Option<MilliBar>,
 }
 
+impl Sensed {
+    /// With what the sensor of the cylinder shows without pressure taken off its reading.
+    #[must_use]
+    pub fn without_offset(self, offset: MilliBar) -> Self {
+        Self {
+            cylinder_pressure: self.cylinder_pressure.map(|pressure| pressure - offset),
+            ..self
+        }
+    }
+}
+
 /// Watches the sensors from step to step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sensors {
@@ -58,8 +69,7 @@ impl Sensors {
             angle: angle?,
             // An implement does not replace a faulty lever.
             set_point: lever.map(|lever| inputs.set_point.unwrap_or(lever))?,
-            cylinder_pressure: pressure(inputs.cylinder_pressure)
-                .map(|pressure| pressure - parameters.pressure_offset),
+            cylinder_pressure: pressure(inputs.cylinder_pressure),
             pump_pressure: pressure(inputs.pump_pressure),
         })
     }
@@ -130,10 +140,7 @@ mod tests {
 
     #[test]
     fn the_offset_of_a_pressure_is_taken_off_after_its_range_is_checked() {
-        let parameters = SensorParameters {
-            pressure_offset: MilliBar(3_000),
-            ..SensorParameters::NOMINAL
-        };
+        let parameters = SensorParameters::NOMINAL;
         let judged = |shown: MilliBar| {
             let inputs = Inputs {
                 cylinder_pressure: Some(shown),
@@ -141,6 +148,7 @@ mod tests {
                 ..sample(Some(80_000))
             };
             let sensed = Sensors::default().judge(&inputs, &parameters).unwrap();
+            let sensed = sensed.without_offset(MilliBar(3_000));
             [sensed.cylinder_pressure, sensed.pump_pressure]
         };
         for shown in [MilliBar(0), MilliBar(50_000), parameters.pressure_max] {

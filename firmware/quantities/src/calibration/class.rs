@@ -94,16 +94,13 @@ const KEY_ONLY: Class = Class::Safety(Tightening::None);
 pub const CLASSES: &[Classified] = &[
     row("hydraulics", Class::Machine, &[
         "piston_area", "load_ratio", "spool_lag", "lower_spool_lag", "compensator_lag", "hysteresis", "reference_drop",
-        "assumed_drop", "smallest_drop", "largest_drop", "pressure_filter", "drop_learning", "relief_pressure", "relief_margin",
+        "assumed_drop", "smallest_drop", "largest_drop", "pressure_offset", "pressure_filter", "drop_learning", "relief_pressure", "relief_margin",
     ]),
     row("sensors", UP, &[
         "angle_min", "lever_min", "pressure_min", "second_track",
     ]),
     row("sensors", DOWN, &[
         "angle_max", "angle_jump", "lever_max", "pressure_max", "bridged", "angle_lag",
-    ]),
-    row("sensors", Class::Machine, &[
-        "pressure_offset",
     ]),
     row("lock", UP, &[
         "lever_movement", "healthy_time", "engine_running", "engine_settling", "engine_required",

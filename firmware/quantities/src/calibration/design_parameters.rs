@@ -34,6 +34,8 @@ parameter_group! {
         smallest_drop: MilliBar = 1_000, 200..=10_000;
         /// Largest drop that the lowering map believes: above the relief valve only shocks remain.
         largest_drop: MilliBar = 200_000, 20_000..=350_000;
+        /// What the sensor of the cylinder shows without pressure: it is taken off the reading.
+        pressure_offset: MilliBar = 0, -20_000..=20_000;
         /// Low-pass on the cylinder pressure: slower than the load swinging on its oil (4 Hz with air in it, and up), whose damping a faster map would cancel.
         pressure_filter: Millisecond = 240, 1..=1_000;
         /// Time in which the load estimate follows the sinking speed when there is no pressure sensor.
@@ -62,8 +64,6 @@ parameter_group! {
         pressure_min: MilliBar = -5_000, -50_000..=0;
         /// Largest pressure that a healthy sensor shows: shock valve plus margin.
         pressure_max: MilliBar = 260_000, 20_000..=600_000;
-        /// What the sensor of the cylinder shows without pressure: it is taken off the reading.
-        pressure_offset: MilliBar = 0, -20_000..=20_000;
         /// How long a bad angle or lever sample is bridged by the last good one before it is a fault: at full speed the hitch moves less than 1 degree. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
         bridged: Millisecond = 5, 0..=44;
         /// Time constant with which the angle sensor and its filter follow the hitch. An error to the long side costs time, one to the short side overshoot. A frozen angle is found later by it, so that some of the range is refused; see `docs/safety.md`.
