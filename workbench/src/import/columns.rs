@@ -13,6 +13,8 @@ const MOST_RAD: f64 = 3.2;
 const SURELY_RAD: f64 = MOST_RAD;
 /// Larger values of a current are in milliampere.
 const MOST_A: f64 = 20.0;
+/// Largest current of a valve, A, that is taken for ampere although the log states mA.
+const MOST_A_IN_MA: f64 = 5.0;
 /// The column of the angle.
 const ANGLE: &str = "rocker_angle_deg";
 /// Reason of a column that the user assigned.
@@ -127,12 +129,16 @@ impl Mapping {
                 }
             }
         }
+        let in_ma = columns
+            .iter()
+            .filter(|column| column.unit.as_deref() == Some("mA"));
+        let largest_ma = in_ma.map(largest).fold(0.0, f64::max);
         for words in &CHANNELS {
             if mapping.has(words.channel) || left_out.contains(&words.channel) {
                 continue;
             }
             let free = columns.iter().filter(|column| !used.contains(&column.name));
-            match proposal(words, kind, free) {
+            match proposal(words, kind, free, largest_ma) {
                 Ok(Some((column, taken))) => {
                     used.push(column.name.clone());
                     mapping.taken.push(taken);
@@ -355,6 +361,7 @@ fn proposal<'c>(
     words: &Words,
     kind: Kind,
     columns: impl Iterator<Item = &'c LogColumn>,
+    largest_ma: f64,
 ) -> Result<Proposal<'c>, Untold> {
     let mut candidates: Vec<Candidate<'c>> = columns
         .filter_map(|column| candidate(words, column))
@@ -401,7 +408,7 @@ fn proposal<'c>(
             ),
         });
     }
-    let Some((unit, by_unit)) = unit(words.channel, column) else {
+    let Some((unit, by_unit)) = unit(words.channel, column, largest_ma) else {
         return Ok(None);
     };
     let is_stated = column.unit.as_ref() == Some(&unit);
@@ -450,10 +457,16 @@ fn candidate<'c>(words: &Words, column: &'c LogColumn) -> Option<Candidate<'c>> 
     })
 }
 
-/// The most likely unit of a column, and the reason; `None` without evidence.
-fn unit(channel: &str, column: &LogColumn) -> Option<(String, String)> {
+/// The largest magnitude in a column.
+fn largest(column: &LogColumn) -> f64 {
     let known = column.values.iter().filter(|value| value.is_finite());
-    let largest = known.fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    known.fold(0.0_f64, |largest, value| largest.max(value.abs()))
+}
+
+/// The most likely unit of a column, and the reason; `None` without evidence. `largest_ma` is the largest value of all columns that the log
+/// states in mA: a valve that is off shows some milliampere, but where no current is larger they are ampere.
+fn unit(channel: &str, column: &LogColumn, largest_ma: f64) -> Option<(String, String)> {
+    let largest = largest(column);
     let said = column.unit.clone();
     let odd = |unit: &str, what: &str| {
         let claimed = said.as_deref().unwrap_or("no unit");
@@ -470,7 +483,9 @@ fn unit(channel: &str, column: &LogColumn) -> Option<(String, String)> {
             odd("rad", "radians")
         }
         ("rocker_angle_deg", Some("rad")) if largest > 2.0 * MOST_RAD => odd("deg", "degrees"),
-        ("lift_current_a" | "lower_current_a", Some("mA")) if largest > 0.0 && largest <= 5.0 => {
+        ("lift_current_a" | "lower_current_a", Some("mA"))
+            if largest > 0.0 && largest_ma <= MOST_A_IN_MA =>
+        {
             odd("A", "ampere")
         }
         (_, Some(unit)) => Some((unit.to_owned(), format!("{unit} in the log"))),

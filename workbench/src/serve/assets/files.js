@@ -130,14 +130,18 @@ async function receive(all) {
   }
 }
 
+/** What is being done, as the status says it. */
+let work = "";
+
 /** @param {string} text */
 function working(text) {
+  work = text;
   byId("files-status").textContent = text;
   /** @type {HTMLButtonElement} */ (byId("files-open")).disabled = true;
 }
 
 function ready() {
-  if (byId("files-status").textContent !== "The campaign is open.") byId("files-status").textContent = "";
+  if (byId("files-status").textContent === work) byId("files-status").textContent = "";
   /** @type {HTMLButtonElement} */ (byId("files-open")).disabled = false;
 }
 
