@@ -1,6 +1,7 @@
 """Files opened in the page of `hitch serve`, in a headless Chromium: a log of another logger is assigned and opened.
 
-Called with the page's address, a log, a broken log, a log with a voltage, the browser, and a folder for pictures.
+Called with the page's address, a log, a broken log, a log with a voltage, two files of one recording, the browser, and a folder for
+pictures.
 """
 
 import sys
@@ -84,12 +85,39 @@ def points(page: Page, log: Path, pictures: Path) -> None:
     assert "cylinder pressure" in heads, heads
 
 
+def notes(page: Page, parts: list[Path], pictures: Path) -> None:
+    """What is assumed and left out is shown before files are opened, and which are joined and cut behind it."""
+    page.wait_for_selector("#views[data-ready]")
+    with page.expect_file_chooser() as choosing:
+        page.locator("#files-choose").press("Enter")
+    choosing.value.set_files(parts)
+    # Of the first of two files, whose columns are the same.
+    said = page.locator(".left-out").first
+    expect(said).to_contain_text('"Zylinderdruck": it is in V')
+    expect(said).to_contain_text('"Luftfeuchte": its name is none of a signal of a run')
+    assumed = page.locator("td.reason").filter(has_text="the log states no unit")
+    expect(assumed.first).to_be_visible()
+    page.locator("#files").screenshot(path=pictures / "files_assumed.png")
+    assert_accessible(page)
+    page.click("#files-open")
+    expect(page.locator("#title")).to_contain_text("150kg")
+    status = page.locator("#files-status .note")
+    expect(status).to_have_count(2)
+    expect(status.nth(0)).to_have_text(f"{parts[1].name} continues {parts[0].name}: they are joined.")
+    expect(status.nth(1)).to_contain_text("it is in motion at 0.00 s: the run begins at the next rest, at ")
+    page.locator("#files-status").screenshot(path=pictures / "files_joined.png")
+    expect(page.locator("#run .run")).to_have_count(1)
+    assert_fits(page)
+    assert_accessible(page)
+
+
 def main() -> None:
-    address, log, broken, volts, name, folder = sys.argv[1:7]
+    address, log, broken, volts, first, second, name, folder = sys.argv[1:9]
     with story(name, folder) as (browser, pictures, faults):
         for view, options in {"desktop": DESKTOP, "phone": PHONE, "dark": DARK}.items():
             open_log(opened(browser, address, options, faults), Path(log), pictures, view)
         points(opened(browser, address, DESKTOP, faults), Path(volts), pictures)
+        notes(opened(browser, address, DESKTOP, faults), [Path(first), Path(second)], pictures)
         # A refused request is a message of the console.
         refused(opened(browser, address, DESKTOP, []), Path(broken), pictures)
     print("the files went well")

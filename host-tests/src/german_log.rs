@@ -23,6 +23,36 @@ pub fn german_log_in_volts() -> String {
     text
 }
 
+/// Two files of one recording, which begins in the middle of a motion, with the log of a whole one behind its rest. The times
+/// state no unit, the cylinder pressure is a voltage, and the humidity of the air is no signal of a run.
+///
+/// # Panics
+/// If the shipped log has other columns.
+#[must_use]
+pub fn german_recording() -> [String; 2] {
+    const STEP_S: f64 = 0.02;
+    let text = german_log_in_volts();
+    let (header, rows) = text.split_once('\n').expect("a header");
+    let header = header.replace("Zeit [s]", "Zeit") + ";Luftfeuchte [%]";
+    let rows: Vec<&str> = rows
+        .lines()
+        .map(|row| row.split_once(';').expect("a time").1)
+        .collect();
+    let middle = rows.len() / 2;
+    let recorded: Vec<String> = rows[middle..]
+        .iter()
+        .chain(&rows)
+        .enumerate()
+        .map(|(index, row)| {
+            let time = format!("{:.2}", STEP_S * index as f64).replace('.', ",");
+            format!("{time};{row};45,0\n")
+        })
+        .collect();
+    // The next file begins in the whole motion.
+    let (first, second) = recorded.split_at(recorded.len() - middle);
+    [first, second].map(|rows| format!("{header}\n{}", rows.concat()))
+}
+
 /// The shipped log of a lowering move with 150 kg, as such a log.
 ///
 /// # Panics

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use host_tests::german_log::{german_log, german_log_in_volts};
+use host_tests::german_log::{german_log, german_log_in_volts, german_recording};
 use host_tests::page_server::PageServer;
 use host_tests::python::{environment, run, scripts};
 use host_tests::refusal;
@@ -22,12 +22,17 @@ fn a_log_of_another_logger_is_assigned_and_opened() {
     fs::write(&volts, german_log_in_volts()).unwrap();
     fs::write(&log, german_log()).unwrap();
     fs::write(&broken, refusal::log().replacen("16.0", "oops", 1)).unwrap();
+    let parts = ["Teil1_150kg.csv", "Teil2_150kg.csv"].map(|name| dir.path().join(name));
+    for (part, text) in parts.iter().zip(german_recording()) {
+        fs::write(part, text).unwrap();
+    }
     let server = PageServer::start(dir.path(), &[]);
     let mut command = Command::new(python);
     command
         .arg(scripts().join("files_in_browser.py"))
         .arg(&server.page)
         .args([&log, &broken, &volts])
+        .args(&parts)
         .arg("chromium")
         .arg(folder.join("pictures"))
         .env("PYTHONPYCACHEPREFIX", folder.join("python-cache"));

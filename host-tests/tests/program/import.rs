@@ -6,6 +6,7 @@ use std::process::{Command, Output};
 
 use hitch_campaign::{Campaign, Run};
 use hitch_plant::{Channel, Linkage};
+use host_tests::german_log::german_log;
 use host_tests::program::run;
 use host_tests::python::{self, installed, scripts};
 use host_tests::refusal::refused;
@@ -315,4 +316,19 @@ fn what_cannot_be_told_is_asked_for() {
         &maps.split(' ').collect::<Vec<_>>(),
         "exists already",
     );
+}
+
+/// A valve that is off shows a few milliampere. They are not ampere where the other current states the same unit and has more.
+#[test]
+fn an_idle_valve_keeps_the_unit_that_the_log_states() {
+    let dir = TempDir::new().unwrap();
+    fs::write(dir.path().join("log.csv"), german_log()).unwrap();
+    let arguments = ["import", "log.csv", "--out", "c", "--load", "150", "--yes"];
+    let output = run(dir.path(), &arguments);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{output:?}");
+    assert!(said.contains("Ventil Heben Strom:mA"), "{said}");
+    let campaign = Campaign::load(&dir.path().join("c")).unwrap();
+    let lift_a = &campaign.runs[0].lift_current_a;
+    assert!(lift_a.iter().all(|&lift_a| lift_a < 0.05), "{said}");
 }

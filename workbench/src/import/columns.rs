@@ -463,8 +463,8 @@ fn largest(column: &LogColumn) -> f64 {
     known.fold(0.0_f64, |largest, value| largest.max(value.abs()))
 }
 
-/// The most likely unit of a column, and the reason; `None` without evidence. `largest_ma` is the largest value of all columns that the log
-/// states in mA: a valve that is off shows some milliampere, but where no current is larger they are ampere.
+/// The most likely unit of a column, and the reason; `None` without evidence. `largest_ma`: of all columns stated in mA. A valve that is
+/// off shows some milliampere; where no current is larger they are ampere.
 fn unit(channel: &str, column: &LogColumn, largest_ma: f64) -> Option<(String, String)> {
     let largest = largest(column);
     let said = column.unit.clone();
