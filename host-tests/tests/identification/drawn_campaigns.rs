@@ -52,7 +52,7 @@ fn drawn(seed: u64) -> (Family, Experiment) {
     (family, experiment)
 }
 
-/// Explained within a limit, with every account that was told during the search.
+/// The explanation of a campaign within a limit, and the intermediate results that the search reported.
 fn explained(family: Family, experiment: &Experiment, limit: Limit<'_>) -> (Explanation, Vec<Fit>) {
     let accounts = Mutex::new(Vec::new());
     let options = Options {

@@ -222,6 +222,18 @@ fn quantiles(moves: &[Figures], of: fn(&Figures) -> f64) -> [f64; 3] {
     [at(0.5), at(0.95), at(1.0)]
 }
 
+/// Prints the figures of a case, and returns them if one of them is beyond its bar.
+fn missed_bar(case: &Case, title: &str, moves: &[Figures]) -> Option<String> {
+    let line = line(title, moves);
+    println!("{line}");
+    let [median, high, _] = quantiles(moves, |moved| moved.ratio);
+    let [.., overshoot_deg] = quantiles(moves, |moved| moved.overshoot_deg);
+    let faults = moves.iter().any(|moved| moved.fault.is_some());
+    let missed =
+        median > case.median || high > HIGH || overshoot_deg > case.overshoot_deg || faults;
+    missed.then_some(line)
+}
+
 fn line(title: &str, moves: &[Figures]) -> String {
     let [median, high, _] = quantiles(moves, |moved| moved.ratio);
     let [_, overshoot, most] = quantiles(moves, |moved| moved.overshoot_deg);
@@ -249,14 +261,8 @@ fn a_machine_that_is_calibrated_from_its_model_moves_well_with_each_dynamic_effe
             on_model(&model, &calibration),
             on_rig(&physics, &calibration),
         ] {
-            let line = line(&format!("{} {}", case.title(), moves[0].plant), &moves);
-            println!("{line}");
-            let [median, high, _] = quantiles(&moves, |moved| moved.ratio);
-            let [.., overshoot_deg] = quantiles(&moves, |moved| moved.overshoot_deg);
-            let faults = moves.iter().any(|moved| moved.fault.is_some());
-            if median > case.median || high > HIGH || overshoot_deg > case.overshoot_deg || faults {
-                missed.push(line);
-            }
+            let title = format!("{} {}", case.title(), moves[0].plant);
+            missed.extend(missed_bar(case, &title, &moves));
         }
     }
     assert!(missed.is_empty(), "{missed:#?}");
@@ -281,14 +287,7 @@ fn a_machine_that_is_calibrated_from_its_model_moves_well_with_each_steady_error
             )
         );
         let moves = on_rig(&physics, &calibration);
-        let line = line(&case.title(), &moves);
-        println!("{line}");
-        let [median, high, _] = quantiles(&moves, |moved| moved.ratio);
-        let [.., overshoot_deg] = quantiles(&moves, |moved| moved.overshoot_deg);
-        let faults = moves.iter().any(|moved| moved.fault.is_some());
-        if median > case.median || high > HIGH || overshoot_deg > case.overshoot_deg || faults {
-            missed.push(line);
-        }
+        missed.extend(missed_bar(case, &case.title(), &moves));
     }
     assert!(missed.is_empty(), "{missed:#?}");
 }

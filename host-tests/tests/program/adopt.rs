@@ -117,27 +117,19 @@ fn a_data_sheet_becomes_a_machine_and_a_baseline_shows_what_has_changed() {
     let first = &ranked["candidates"][0];
     assert_eq!(first["effect"], "lower-threshold-shift");
     same(of(&first["parameters"], "value"), "ranked");
-    let add = ["add", "lower-threshold-shift", "--campaign", worn];
-    let add = [&add[..], &beside, &["--out", "added.toml"]].concat();
-    assert!(run(dir.path(), &add).status.success());
-    let added = hitch_model_file::named(dir.path().join("added.toml").to_str().unwrap()).unwrap();
-    let effect = added
-        .effects
-        .iter()
-        .find(|added| added.effect.id() == "lower-threshold-shift");
-    same(effect.unwrap().values[0], "added");
+    let size_of = |effect: &str, model: &str| {
+        let add = ["add", effect, "--campaign", worn, "--model", model];
+        let add = [&add[..], &["--baseline", clean, "--out", "added.toml"]].concat();
+        assert!(run(dir.path(), &add).status.success());
+        let added = dir.path().join("added.toml");
+        let added = hitch_model_file::named(added.to_str().unwrap()).unwrap();
+        let found = added.effects.iter().find(|one| one.effect.id() == effect);
+        found.unwrap().values[0]
+    };
+    same(size_of("lower-threshold-shift", "machine.toml"), "added");
     let machine = fs::read_to_string(dir.path().join("machine.toml")).unwrap();
     fs::write(dir.path().join("own.toml"), format!("{machine}{OWN_SHIFT}")).unwrap();
-    let beside = ["--model", "own.toml", "--baseline", clean];
-    let add = ["add", "own-shift", "--campaign", worn];
-    let add = [&add[..], &beside, &["--out", "term.toml"]].concat();
-    assert!(run(dir.path(), &add).status.success());
-    let added = hitch_model_file::named(dir.path().join("term.toml").to_str().unwrap()).unwrap();
-    let term = added
-        .effects
-        .iter()
-        .find(|one| one.effect.id() == "own-shift");
-    same(term.unwrap().values[0], "as a term of one's own");
+    same(size_of("own-shift", "own.toml"), "as a term of one's own");
 }
 
 #[test]

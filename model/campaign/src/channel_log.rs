@@ -40,7 +40,7 @@ pub trait ChannelFile {
         false
     }
 
-    /// Whether a channel lacks its last samples.
+    /// Whether the last samples of a channel are missing.
     fn is_shortened(&self, _channel: usize) -> bool {
         false
     }

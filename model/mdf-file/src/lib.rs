@@ -28,9 +28,9 @@ pub struct Recording {
     corrections: Vec<(u64, Vec<u8>)>,
     /// Whether its logger did not finish it.
     is_unfinished: bool,
-    /// Index of each group of data that lacks its last records.
+    /// Indices of the data groups whose last records are missing.
     pub shortened: HashSet<usize>,
-    /// Whether it lacks its end.
+    /// Whether the end of the file is missing.
     pub is_cut_off: bool,
 }
 

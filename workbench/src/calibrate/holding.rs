@@ -15,7 +15,7 @@ use super::found;
 /// Factor `m`. Oil of 50 C instead of 40 C leaks as much more.
 const MARGIN: f64 = 1.5;
 /// The shortest time that the firmware accepts.
-pub const SHORTEST_MEMORY: Millisecond = Millisecond(1_000);
+const SHORTEST_MEMORY: Millisecond = Millisecond(1_000);
 /// Oil temperature for which the conductance of a leak is given, C.
 const OIL_TEMPERATURE_C: f64 = 40.0;
 /// Time until a leak flows steadily, and in which its sinking is measured, s.

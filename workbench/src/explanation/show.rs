@@ -97,7 +97,7 @@ impl fmt::Display for Alternative {
 }
 
 impl Explanation {
-    /// What is said of a comparison of two campaigns that shows no change.
+    /// Text of a comparison of two campaigns that shows no change.
     pub const UNCHANGED: &str = "No change is detectable with these campaigns.";
 
     /// The campaign and the explained model as the reference of a comparison, with its error in sigma as it is shown.

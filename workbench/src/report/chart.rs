@@ -300,6 +300,15 @@ fn px(value: f64) -> f64 {
 mod tests {
     use super::*;
 
+    fn flow<'a>(x: &'a [f64], y: &'a [f64]) -> Line<'a> {
+        Line {
+            name: "flow",
+            stroke: Stroke::After,
+            x,
+            y,
+        }
+    }
+
     #[test]
     fn long_logs_are_thinned_but_keep_their_peaks() {
         let mut values = vec![0.0; 10_000];
@@ -311,12 +320,7 @@ mod tests {
     #[test]
     fn a_line_breaks_at_a_dropout() {
         let (x, y) = ([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, f64::NAN, 1.0]);
-        let line = Line {
-            name: "flow",
-            stroke: Stroke::After,
-            x: &x,
-            y: &y,
-        };
+        let line = flow(&x, &y);
         let (sx, sy) = (
             Scale::new((0.0, 3.0), (0.0, 30.0)),
             Scale::new((0.0, 1.0), (10.0, 0.0)),
@@ -329,12 +333,7 @@ mod tests {
         let x: Vec<f64> = (0..100).map(f64::from).collect();
         let mut y = vec![0.0; 100];
         y[40] = 1.0;
-        let line = Line {
-            name: "flow",
-            stroke: Stroke::After,
-            x: &x,
-            y: &y,
-        };
+        let line = flow(&x, &y);
         let (sx, sy) = (
             Scale::new((0.0, 99.0), (0.0, 99.0)),
             Scale::new((0.0, 1.0), (10.0, 0.0)),

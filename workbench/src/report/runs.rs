@@ -84,6 +84,9 @@ pub fn runs(views: &[RunView]) -> Markup {
 fn plots(sorted: &[&RunView]) -> Vec<Option<Value>> {
     let (mut whole, mut all) = (0, 0);
     let plot = |view: &&RunView| {
+        if all > MOST_BYTES {
+            return None;
+        }
         whole += view.time_s.len();
         let drawn = match whole <= WHOLE_SAMPLES {
             true => (*view).clone(),

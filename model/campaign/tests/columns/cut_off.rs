@@ -1,4 +1,4 @@
-//! MDF that is cut off, or that its logger did not finish: the whole records are read, and their number is said.
+//! MDF files that are cut off or not finalised: complete records are read, and a note states their number.
 
 use falcon_mdf::Mf4Writer;
 use hitch_campaign::{Campaign, Run};
@@ -34,7 +34,7 @@ fn places(bytes: &[u8], kind: &[u8; 4]) -> Vec<usize> {
     blocks.map(|(at, _)| at).collect()
 }
 
-/// The run of a log, and what is said about its end; or the fault.
+/// The run of a log with the note about its end, or the error message.
 fn read(bytes: &[u8], columns: &str) -> Result<(Run, Option<String>), String> {
     let dir = campaign("a.mf4", bytes, columns);
     let manifest = std::fs::read_to_string(dir.path().join("campaign.toml")).unwrap();
