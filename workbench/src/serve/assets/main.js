@@ -75,8 +75,22 @@ async function showWorst() {
   else await show(0, null);
 }
 
+/** The last change of what is shown. */
+let turn = Promise.resolve();
+
+/** Makes a function wait for the change before it, so that an older answer never replaces a newer one.
+ * @template {any[]} A
+ * @param {(...args: A) => Promise<void>} work */
+function inTurn(work) {
+  return (/** @type {A} */ ...args) => {
+    const mine = turn.then(() => work(...args));
+    turn = mine.catch(() => {});
+    return mine;
+  };
+}
+
 /** Requests the state again, and keeps the zoom. */
-async function refresh() {
+const refresh = inTurn(async () => {
   state = await ask("state");
   if (!state.ranking) signed = null;
   draw();
@@ -89,7 +103,7 @@ async function refresh() {
     await redraw(undefined);
   }
   await refreshOverlay();
-}
+});
 
 /** States what is shown; a window that is too narrow for it has it as a hint.
  * @param {string} text */
@@ -124,7 +138,7 @@ function draw() {
 }
 
 /** Actions of the error map. */
-const visits = { visit: guarded(visit), compare: guarded(compare) };
+const visits = { visit: guarded(inTurn(visit)), compare: guarded(inTurn(compare)) };
 
 /** Actions of the panels. */
 const acts = {
@@ -140,7 +154,7 @@ const acts = {
     overlay: previewOverlay,
     all: showTrial,
   })),
-  sign: guarded(async (/** @type {Effect} */ effect) => {
+  sign: guarded(inTurn(async (/** @type {Effect} */ effect) => {
     if (!view) return;
     signed = signed?.name === effect.name ? null : effect;
     view = await look(view.run);
@@ -148,7 +162,7 @@ const acts = {
     /** @type {HTMLElement | null} */ (document.querySelector(`#ranking [aria-label="Signature of ${effect.title}"]`))?.focus();
     tell(signed ? `Signature of: ${signed.title}` : "");
     await redraw(undefined);
-  }),
+  })),
 };
 
 /** Starts a computation with a request, and follows it.
@@ -269,7 +283,7 @@ function guarded(work) {
 
 /** Lists runs and signals of the campaign. */
 function list() {
-  listRuns(state.runs, guarded((run) => show(run, null)), (run) => overlayBox(run, state.runs[run].file, sayError));
+  listRuns(state.runs, guarded(inTurn((run) => show(run, null))), (run) => overlayBox(run, state.runs[run].file, sayError));
   listSignals(state.channels, () => {
     redraw(undefined).catch(sayError);
     refreshOverlay().catch(sayError);
