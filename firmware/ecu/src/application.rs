@@ -18,10 +18,11 @@ use hitch_protocols::xcp::{Access, EcuMemory, Event, Slave};
 use hitch_quantities::signals::charge::CoilCharge;
 use hitch_quantities::{Inputs, Outputs, State, ValidCalibration};
 
+use super::adc_code::AdcCode;
 use super::arbiter::Arbiter;
 use super::bus_watch::BusWatch;
 use super::consent::ConsentWatch;
-use super::converter::{AdcCode, Conversion};
+use super::converter::Conversion;
 use super::drive::Drive;
 use super::enable_line::EnableLine;
 use super::hardware::{Contacts, FlashRegions, Hardware};

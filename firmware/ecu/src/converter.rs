@@ -9,32 +9,8 @@
 use hitch_quantities::Inputs;
 use hitch_quantities::units::{MilliAmp, MilliBar, MilliDegree, MilliVolt, PerMille};
 
+use super::adc_code::AdcCode;
 use super::scaling::BoardScaling;
-
-/// A code of the converter: 0 to 4095.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct AdcCode(u16);
-
-impl AdcCode {
-    /// Full scale.
-    pub const MAX: Self = Self(4095);
-
-    /// The code of a converter's data register; the bits above the twelfth are dropped.
-    #[must_use]
-    pub const fn new(register: u16) -> Self {
-        Self(register & Self::MAX.0)
-    }
-
-    /// The code as a number.
-    #[must_use]
-    pub const fn get(self) -> u16 {
-        self.0
-    }
-
-    const fn wide(self) -> i32 {
-        self.0 as i32
-    }
-}
 
 /// A ratiometric signal in its healthy range: 0 at 10 % of the sensor supply, 32 768 at 90 %.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -317,7 +293,8 @@ mod tests {
     /// Samples with signals at `volts`, a sensor supply of `sensor_supply` volts, and a reference at `share` of its
     /// nominal value.
     fn samples(volts: f64, sensor_supply: f64, share: f64) -> Samples {
-        let code = |of_full_scale: f64| AdcCode((of_full_scale / share * 4096.0).round() as u16);
+        let code =
+            |of_full_scale: f64| AdcCode::new((of_full_scale / share * 4096.0).round() as u16);
         Samples {
             supply: code(12.0 / 24.576),
             lift_current: code(0.5),
@@ -372,7 +349,7 @@ mod tests {
         let mut conversion = Conversion::new(BoardScaling::NOMINAL);
         let healthy = samples(3.5, 5.0, 1.0);
         let before = conversion.inputs(&healthy);
-        for absurd in [AdcCode(0), AdcCode(1), AdcCode::MAX] {
+        for absurd in [AdcCode::new(0), AdcCode::new(1), AdcCode::MAX] {
             let found = conversion.inputs(&Samples {
                 sensor_supply: absurd,
                 reference: absurd,
@@ -390,8 +367,8 @@ mod tests {
         let found: Vec<_> = (205..=3_890)
             .map(|code| {
                 conversion.inputs(&Samples {
-                    rocker_angle: AdcCode(code),
-                    lift_current: AdcCode(code),
+                    rocker_angle: AdcCode::new(code),
+                    lift_current: AdcCode::new(code),
                     ..samples(2.5, 5.0, 1.0)
                 })
             })

@@ -25,6 +25,7 @@
 #[cfg(test)]
 extern crate std;
 
+mod adc_code;
 mod application;
 mod arbiter;
 mod bus_watch;
@@ -46,10 +47,11 @@ mod status;
 mod task_sequence_monitor;
 mod tick_timer;
 
+pub use adc_code::AdcCode;
 pub use application::Ecu;
 pub use can_port::CanPort;
 pub use coil_driver::{CoilDriver, CoilDriverError};
-pub use converter::{AdcCode, Conversion, Samples, Signal};
+pub use converter::{Conversion, Samples, Signal};
 pub use drive::{Compare, Drive};
 pub use hardware::{Contacts, FlashRegions, Hardware};
 pub use hosted_ecu::{HostedEcu, Probe};

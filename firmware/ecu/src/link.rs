@@ -16,7 +16,8 @@ use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_protocols::can::Frame;
 use hitch_quantities::units::PerMille;
 
-use super::converter::{AdcCode, Samples};
+use super::adc_code::AdcCode;
+use super::converter::Samples;
 use super::hardware::Contacts;
 use super::panel::Panel;
 

@@ -1,9 +1,9 @@
 //! Scaling of a board: converter codes and PWM timer.
 
-use hitch_quantities::calibration::class::Fitted;
+use hitch_quantities::calibration::fitted::Fitted;
 use hitch_quantities::units::{MilliAmp, MilliVolt, PerMille};
 
-use super::converter::AdcCode;
+use super::adc_code::AdcCode;
 
 /// The scaling of a board. The full scales are quantities that give a code of 4096 with the nominal reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use hitch_controller::Controller;
 use hitch_protocols::j1939::{Trouble, Troubles};
 use hitch_protocols::storage::{CalibrationStore, Copy, Progress, SafetySource, Source};
 use hitch_protocols::xcp::{CalibrationPages, Slave};
-use hitch_quantities::calibration::class::Fitted;
+use hitch_quantities::calibration::fitted::Fitted;
 use hitch_quantities::{Calibration, ValidCalibration};
 
 /// Time in which the bus takes the answer to whoever wants to store: many a processor stands still for seconds then.

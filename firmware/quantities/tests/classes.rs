@@ -4,7 +4,8 @@ use hitch_quantities::Calibration;
 use hitch_quantities::calibration::calibration_words::{
     GROUPS, SAFETY_ITEM_COUNT, SCALARS_WORD, items, word_range,
 };
-use hitch_quantities::calibration::class::{CLASSES, Class, Fitted, Tightening};
+use hitch_quantities::calibration::class::{CLASSES, Class, Tightening};
+use hitch_quantities::calibration::fitted::Fitted;
 use hitch_quantities::calibration::parameter::ParameterInfo;
 use hitch_quantities::units::Millisecond;
 

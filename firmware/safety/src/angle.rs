@@ -7,7 +7,7 @@ use hitch_quantities::{CoilCurrents, Inputs};
 use super::following::{AngleReading, FollowingMonitor, Standstill};
 use super::noise_detector::NoiseDetector;
 use super::samples::{SPAN, Samples};
-use crate::Limits;
+use crate::limits::Limits;
 
 /// The noise measure averages over this many samples: noise of +-0.8 degree is found in 18 ms, and that of a sensor
 /// with

@@ -12,8 +12,8 @@
 use hitch_quantities::Inputs;
 use hitch_quantities::units::MilliDegree;
 
-use crate::Limits;
 use crate::button::{Button, Press};
+use crate::limits::Limits;
 use crate::locks::Lock;
 
 /// What the operator has touched.

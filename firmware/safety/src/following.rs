@@ -55,90 +55,17 @@
 //! of its weight. The lowering coil then is cut until the command has been off ([`Standstill::GroundContact`]). This is
 //! no fault: the hitch stops in either case.
 
-use hitch_quantities::calibration::design_parameters::{HydraulicParameters, SafetyParameters};
-use hitch_quantities::calibration::linkage::LinkageTable;
-use hitch_quantities::calibration::valve_table::ValveTable;
+use hitch_quantities::calibration::design_parameters::SafetyParameters;
 use hitch_quantities::fixed::Divisor;
-use hitch_quantities::piston::{flow, piston_speed};
 use hitch_quantities::units::{Micrometre, MicrometrePerSecond, MilliAmp, MilliBar, MilliDegree};
-use hitch_quantities::{Calibration, CoilCurrents, Inputs};
+use hitch_quantities::{CoilCurrents, Inputs};
 
-use crate::Limits;
+use crate::limits::Limits;
+use crate::machine_model::MachineModel;
 
 /// The speed that is seen is averaged over this many steps; over 64 a load that swings to a standstill would
 /// still have 0.1 m/s then.
 const AVERAGE_STEPS: i32 = 24;
-
-/// Model of the machine for the monitor.
-#[derive(Clone, Copy, Debug)]
-pub struct MachineModel<'a> {
-    /// Lift valve.
-    lift: &'a ValveTable,
-    /// Lowering valve.
-    lower: &'a ValveTable,
-    /// Rocker angle to piston travel.
-    linkage: &'a LinkageTable,
-    /// Hydraulic circuit.
-    hydraulics: &'a HydraulicParameters,
-    /// Lowest and highest set point, just inside the ends of the travel.
-    ends: (MilliDegree, MilliDegree),
-}
-
-impl<'a> MachineModel<'a> {
-    /// The machine of a calibration.
-    #[must_use]
-    pub const fn of(calibration: &'a Calibration) -> Self {
-        Self {
-            lift: &calibration.lift,
-            lower: &calibration.lower,
-            linkage: &calibration.linkage,
-            hydraulics: &calibration.hydraulics,
-            ends: (
-                calibration.position.lower_limit,
-                calibration.position.upper_limit,
-            ),
-        }
-    }
-
-    /// Lowest and highest set point.
-    pub(crate) const fn ends(self) -> (MilliDegree, MilliDegree) {
-        self.ends
-    }
-
-    /// Piston speed that the currents less a margin give.
-    fn speed(self, passed: CoilCurrents, margin: MilliAmp) -> MicrometrePerSecond {
-        let (table, current) = match passed.lift > MilliAmp::ZERO {
-            true => (self.lift, passed.lift),
-            false => (self.lower, passed.lower),
-        };
-        piston_speed(table.flow(current - margin), self.hydraulics.piston_area)
-    }
-
-    /// Signed piston speed that the currents give by the valve curves, upwards.
-    pub(crate) fn signed_speed(self, passed: CoilCurrents) -> MicrometrePerSecond {
-        let speed = self.speed(passed, MilliAmp::ZERO);
-        match passed.lift > MilliAmp::ZERO {
-            true => speed,
-            false => -speed,
-        }
-    }
-
-    /// Rocker angle for a piston travel of a millimetre at an angle, in thousandths of a degree.
-    pub(crate) fn degrees(self, angle: MilliDegree) -> i32 {
-        let half = MilliDegree(1_000);
-        let way = self.linkage.travel(angle + half) - self.linkage.travel(angle - half);
-        2_000_000 / way.0.max(1)
-    }
-
-    /// The currents that give a piston speed by the valve curves.
-    fn currents(self, speed: [MicrometrePerSecond; 2]) -> CoilCurrents {
-        let [lift, lower] = speed.map(|speed| flow(speed, self.hydraulics.piston_area));
-        CoilCurrents {
-            lift: self.lift.current(lift),
-            lower: self.lower.current(lower),
-        }
-    }
-}
 
 /// Averages of the angle sensor.
 #[derive(Clone, Copy, Debug)]
@@ -385,7 +312,7 @@ fn onset_allowance(
     machine: MachineModel<'_>,
     safety: &SafetyParameters,
 ) -> MilliDegree {
-    match lifts && angle <= machine.ends.0 + safety.end_zone {
+    match lifts && angle <= machine.ends().0 + safety.end_zone {
         true => safety.onset_debt + safety.stop_debt,
         false => safety.onset_debt,
     }
@@ -403,13 +330,13 @@ fn is_held(
     match lifts {
         true => {
             let full = hydraulics.relief_pressure - hydraulics.relief_margin;
-            angle >= machine.ends.1 - safety.end_zone
+            angle >= machine.ends().1 - safety.end_zone
                 || inputs
                     .pump_pressure
                     .is_some_and(|pressure| pressure >= full)
         }
         false => {
-            angle <= machine.ends.0 + safety.end_zone
+            angle <= machine.ends().0 + safety.end_zone
                 || inputs
                     .cylinder_pressure
                     .is_some_and(|pressure| pressure <= hydraulics.smallest_drop)

@@ -62,7 +62,9 @@ mod coils;
 mod command;
 mod consent;
 mod following;
+mod limits;
 mod locks;
+mod machine_model;
 mod measuring;
 mod noise_detector;
 mod ride;
@@ -71,11 +73,7 @@ mod samples;
 mod supply;
 mod travel_limits;
 
-use hitch_quantities::calibration::design_parameters::{
-    LockParameters, OperatorParameters, RateParameters, RemoteParameters, SafetyParameters,
-    SensorParameters,
-};
-use hitch_quantities::calibration::field_parameters::RideParameters;
+use hitch_quantities::calibration::design_parameters::LockParameters;
 use hitch_quantities::units::{Duty, MilliAmp, Millisecond};
 use hitch_quantities::{CoilCurrents, Duties, Inputs, Trip};
 
@@ -84,8 +82,9 @@ use arming::Arming;
 use coils::CoilWatch;
 pub use command::{Command, Step};
 use consent::Consent;
-pub use following::MachineModel;
+pub use limits::Limits;
 use locks::{Lock, Locks};
+pub use machine_model::MachineModel;
 use measuring::MeasuringFaults;
 use ride::RideWatch;
 use rows::{Debounce, Rows};
@@ -93,29 +92,6 @@ use supply::SupplyWatch;
 
 /// Rows that hold while the controller bridges a sample of a sensor that it needs.
 const BRIDGED: [Trip; 3] = [Trip::Lever, Trip::AngleMissing, Trip::AngleJumps];
-
-/// What the envelope goes by.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits<'a> {
-    /// Its own limits.
-    pub safety: &'a SafetyParameters,
-    /// What sensors can plausibly say.
-    pub sensors: &'a SensorParameters,
-    /// When the engine locks the hitch, and how long no row may have held before a reset.
-    pub lock: &'a LockParameters,
-    /// Where the dials are shut, and the contacts of the buttons.
-    pub operator: &'a OperatorParameters,
-    /// How far a button moves the hitch.
-    pub rate: &'a RateParameters,
-    /// How the operator consents to remote control.
-    pub remote: &'a RemoteParameters,
-    /// What ride damping keeps to.
-    pub ride: &'a RideParameters,
-    /// They, or others of their calibration, have changed in memory.
-    pub damaged: bool,
-    /// What currents do to the hitch.
-    pub machine: MachineModel<'a>,
-}
 
 /// The envelope.
 #[derive(Clone, Copy, Debug, Default)]

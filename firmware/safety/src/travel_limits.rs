@@ -5,7 +5,7 @@
 use hitch_quantities::units::MilliAmp;
 use hitch_quantities::{CoilCurrents, Inputs};
 
-use crate::Limits;
+use crate::limits::Limits;
 
 /// True if a current drives the hitch further beyond a limit of its travel, or lowers it with the dial shut. `passed`:
 /// the currents of the last step.

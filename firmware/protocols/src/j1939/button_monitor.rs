@@ -3,7 +3,7 @@
 use hitch_quantities::Inputs;
 use hitch_quantities::calibration::design_parameters::OperatorParameters;
 
-use super::{Trouble, Troubles};
+use super::trouble::{Trouble, Troubles};
 
 /// Release that counts, ms: longer than a contact bounces.
 const RELEASED_MS: u16 = 20;

@@ -25,6 +25,7 @@ pub mod request;
 mod time;
 pub mod transport;
 pub mod trouble;
+mod trouble_finder;
 
 pub use diagnostics::Variant;
 pub use hitch::{Draft, ExitCode, HitchCommand, HitchStatus, Limit, LimitStatus};
@@ -33,4 +34,5 @@ pub use measured::MeasuredBroadcast;
 pub use name::{Name, NameFields};
 pub use node::{Node, PREFERRED_ADDRESS, Settings};
 pub use remote::Remote;
-pub use trouble::{Trouble, TroubleFinder, Troubles};
+pub use trouble::{Trouble, Troubles};
+pub use trouble_finder::TroubleFinder;

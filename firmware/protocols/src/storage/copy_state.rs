@@ -3,9 +3,9 @@
 use embedded_storage::nor_flash::NorFlash;
 use hitch_quantities::crc32::Crc32;
 
+use super::layout::{CHUNK, Copy, SAFETY_BYTES};
 use super::reader::Reader;
 use super::record::Block;
-use super::store::{CHUNK, Copy, SAFETY_BYTES};
 
 /// A block of a copy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -9,8 +9,10 @@
 mod copy_state;
 pub mod fault_history;
 pub mod fault_log;
+mod layout;
 mod reader;
 pub mod record;
 pub mod store;
 
-pub use store::{CalibrationStore, Copy, Loaded, Progress, SafetySource, Source, StoreError};
+pub use layout::{COPY_BYTES, Copy};
+pub use store::{CalibrationStore, Loaded, Progress, SafetySource, Source, StoreError};

@@ -2,10 +2,8 @@
 
 use embedded_storage::nor_flash::NorFlash;
 
+use super::layout::{CHUNK, CHUNK_WORDS, address};
 use super::record::{HEADER_WORDS, Header};
-use super::store::{CHUNK, address};
-
-const CHUNK_WORDS: usize = CHUNK / 4;
 
 /// Reads a record word by word.
 pub(super) struct Reader<'a, F> {

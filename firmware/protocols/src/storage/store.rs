@@ -14,42 +14,10 @@ use hitch_quantities::calibration::calibration_words::CALIBRATION_WORDS;
 use hitch_quantities::crc32::Crc32;
 
 use super::copy_state::{BlockState, CopyState};
+use super::layout::{CHUNK, CHUNK_WORDS, COPY_BYTES, Copy, SAFETY_CHUNKS, address};
 use super::reader::Reader;
 use super::record;
 use super::record::{Block, Carried};
-
-/// Bytes that are read or programmed at a time: a multiple of what any flash takes at once.
-pub(super) const CHUNK: usize = 32;
-const CHUNK_WORDS: usize = CHUNK / 4;
-/// Bytes that the safety block of this firmware takes, the last chunk filled up. It is first in a copy.
-pub(super) const SAFETY_BYTES: usize = (4 * Block::Safety.record_words()).next_multiple_of(CHUNK);
-const SAFETY_CHUNKS: usize = SAFETY_BYTES / CHUNK;
-/// Bytes that both blocks take.
-pub const COPY_BYTES: usize =
-    SAFETY_BYTES + (4 * Block::Machine.record_words()).next_multiple_of(CHUNK);
-
-/// One of the two copies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Copy {
-    /// Complete: both blocks.
-    Good {
-        /// The higher one counts.
-        sequence: u32,
-    },
-    /// Never written, or just erased.
-    Blank,
-    /// Neither: a power cut while it was written, worn-out flash, or contents that make no calibration.
-    Damaged,
-}
-
-impl Copy {
-    const fn sequence(&self) -> Option<u32> {
-        match *self {
-            Self::Good { sequence } => Some(sequence),
-            Self::Blank | Self::Damaged => None,
-        }
-    }
-}
 
 /// Where a calibration came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -474,9 +442,4 @@ fn chunk_of(words: impl Iterator<Item = u32>, checksum: u32, chunk: usize) -> [u
         }
     }
     bytes
-}
-
-/// Flash is addressed with 32 bits.
-pub(super) fn address(offset: usize) -> u32 {
-    u32::try_from(offset).unwrap_or(u32::MAX)
 }

@@ -13,9 +13,9 @@
 use heapless::{Deque, Vec};
 
 use super::error::Refusal;
+use super::event::Event;
 use super::memory::Memory;
 use super::packet::{MOST_BYTES, Packet, packet};
-use super::slave::Event;
 
 /// Maximum number of lists.
 const LISTS: usize = 4;

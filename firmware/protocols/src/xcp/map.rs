@@ -11,11 +11,11 @@
 use hitch_quantities::calibration::{CALIBRATION_BYTES, calibration_words};
 
 use super::error::Refusal;
+use super::event::Event;
 use super::measurements;
 use super::measurements::Measurements;
 use super::memory::{Memory, MemoryRange, Page, Text};
 use super::pages::{CalibrationPages, Right};
-use super::slave::Event;
 use crate::key::Nonce;
 
 /// Bytes of a slot.

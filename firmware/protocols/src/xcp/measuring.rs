@@ -3,9 +3,9 @@
 use super::command::{code, identifier};
 use super::daq::Daq;
 use super::error::Refusal;
+use super::event::Event;
 use super::memory::{Memory, MemoryRange, Text};
 use super::packet::{Answer, Packet, done, packet, response};
-use super::slave::Event;
 
 /// Lists are dynamic, with prescalers and time stamps; an overload is reported as an event.
 const PROPERTIES: u8 = 0x93;

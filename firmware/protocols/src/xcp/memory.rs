@@ -1,7 +1,7 @@
 //! Memory access of a slave.
 
 use super::error::Refusal;
-use super::slave::Event;
+use super::event::Event;
 use crate::key::Nonce;
 
 /// Page of the calibration.

@@ -10,6 +10,7 @@ mod checksum;
 mod command;
 mod daq;
 mod error;
+mod event;
 pub mod map;
 pub mod measurements;
 mod measuring;
@@ -21,8 +22,9 @@ mod slave;
 mod unlocking;
 
 pub use error::Refusal;
+pub use event::Event;
 pub use map::{Access, EcuMemory};
 pub use measurements::Measurements;
 pub use memory::{Memory, MemoryRange, Page, Text};
 pub use pages::{CalibrationPages, Right};
-pub use slave::{Event, Slave, TOOL_ADDRESS};
+pub use slave::{Slave, TOOL_ADDRESS};

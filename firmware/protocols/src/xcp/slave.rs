@@ -6,6 +6,7 @@ use super::checksum::Checksum;
 use super::command::{code, event, identifier};
 use super::daq::Daq;
 use super::error::Refusal;
+use super::event::Event;
 use super::memory::{Memory, MemoryRange, Text};
 use super::packet::{Answer, MOST_BYTES, Packet, done, packet, response};
 use super::unlocking::{CALIBRATION, Unlocking};
@@ -32,39 +33,6 @@ const DRIVER_VERSION: u8 = 0x10;
 /// States of a session.
 const STORE_REQUESTED: u8 = 0x01;
 const DAQ_RUNNING: u8 = 0x40;
-
-/// Sampling event.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Event {
-    /// With every step of the controller.
-    Every1Ms = 0,
-    /// With every tenth.
-    Every10Ms = 1,
-    /// With every hundredth.
-    Every100Ms = 2,
-}
-
-impl Event {
-    /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 3] = [Self::Every1Ms, Self::Every10Ms, Self::Every100Ms];
-
-    /// The event with a number.
-    #[must_use]
-    pub fn from_number(number: u16) -> Option<Self> {
-        Self::ALL.get(usize::from(number)).copied()
-    }
-
-    /// Time between two of them, ms.
-    #[must_use]
-    pub const fn period_ms(self) -> u8 {
-        match self {
-            Self::Every1Ms => 1,
-            Self::Every10Ms => 10,
-            Self::Every100Ms => 100,
-        }
-    }
-}
 
 /// The slave. It serves one tool at a time, on proprietary J1939 groups: commands from the tool's address, and answers
 /// to it.

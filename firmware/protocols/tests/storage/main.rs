@@ -9,8 +9,8 @@ mod spared;
 
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 use flash::{Flash, FlashError, PAGE, PAGES};
+use hitch_protocols::storage::COPY_BYTES;
 use hitch_protocols::storage::record::{Block, Carried};
-use hitch_protocols::storage::store::COPY_BYTES;
 use hitch_protocols::storage::{CalibrationStore, Copy, Progress, Source, StoreError, record};
 use hitch_quantities::calibration::CALIBRATION_VERSION;
 use hitch_quantities::calibration::calibration_words::{CALIBRATION_WORDS, items};

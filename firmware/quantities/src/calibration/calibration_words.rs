@@ -1,5 +1,6 @@
 //! The calibration block as a list of words, with what each may hold: the view that tools and storage have of it.
 
+use super::block::{CALIBRATION_BYTES, CURRENT_LIMIT, Calibration, FLOW_LIMIT};
 use super::class::{Class, Tightening, class_of};
 use super::design_parameters::{
     BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
@@ -10,7 +11,6 @@ use super::field_parameters::{DraftParameters, RideParameters, SlipParameters};
 use super::linkage::LINKAGE_POINTS;
 use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
 use super::valve_table::{VALVE_POINTS, ValveTable};
-use super::{CALIBRATION_BYTES, CURRENT_LIMIT, Calibration, FLOW_LIMIT};
 use crate::fnv;
 
 /// Words in a block.

@@ -3,10 +3,12 @@
 //! [`Calibration`] is raw: anything may stand in it. [`ValidCalibration`] is one whose checksum, version,
 //! ranges and curves have been checked; the controller takes no other.
 
+mod block;
 pub mod calibration_words;
 pub mod class;
 pub mod design_parameters;
 pub mod field_parameters;
+pub mod fitted;
 pub mod linkage;
 pub mod nominal;
 pub mod parameter;
@@ -15,76 +17,12 @@ pub mod valve_table;
 use super::crc32::Crc32;
 use super::fixed::Divisor;
 use super::units::{MicroLitrePerSecond, MilliAmp, Millisecond};
+pub use block::{CALIBRATION_BYTES, CALIBRATION_VERSION, Calibration};
+use block::{CURRENT_LIMIT, FLOW_LIMIT};
 use calibration_words::CALIBRATION_WORDS;
-use design_parameters::{
-    BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
-    MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
-    SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
-};
-use field_parameters::{DraftParameters, RideParameters, SlipParameters};
 use linkage::{LINKAGE_POINTS, LinkageTable};
 use parameter::{OutOfRange, ParameterGroup};
 use valve_table::{VALVE_POINTS, ValveTable};
-
-/// Layout of the block that this firmware reads.
-pub const CALIBRATION_VERSION: u32 = 7;
-
-/// Largest flow in a table: ten times the pump's, and far from where products saturate.
-const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
-const CURRENT_LIMIT: MilliAmp = MilliAmp(5_000);
-
-/// The raw block. All of it is 32-bit words, so its memory image has no padding.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[repr(C)]
-pub struct Calibration {
-    /// Layout; see [`CALIBRATION_VERSION`].
-    pub version: u32,
-    /// Lift valve at the compensated drop.
-    pub lift: ValveTable,
-    /// Lowering valve at [`HydraulicParameters::reference_drop`].
-    pub lower: ValveTable,
-    /// Rocker angle to piston travel.
-    pub linkage: LinkageTable,
-    /// Hydraulic circuit.
-    pub hydraulics: HydraulicParameters,
-    /// Plausibility of sensors.
-    pub sensors: SensorParameters,
-    /// Start-up lock.
-    pub lock: LockParameters,
-    /// What the operator sets besides the lever.
-    pub operator: OperatorParameters,
-    /// Motion estimator.
-    pub motion: MotionParameters,
-    /// Position control.
-    pub position: PositionParameters,
-    /// Rate control.
-    pub rate: RateParameters,
-    /// Check-valve logic.
-    pub hold: HoldParameters,
-    /// Compensator logic.
-    pub saturation: SaturationParameters,
-    /// Teaching.
-    pub teach: TeachParameters,
-    /// Regulation of the coils' currents.
-    pub current: CurrentParameters,
-    /// What is sent on the bus, and from whom it is received.
-    pub bus: BusParameters,
-    /// Remote control by an implement.
-    pub remote: RemoteParameters,
-    /// Draft pins and draft control.
-    pub draft: DraftParameters,
-    /// Slip guard.
-    pub slip: SlipParameters,
-    /// Ride damping.
-    pub ride: RideParameters,
-    /// Safety envelope.
-    pub safety: SafetyParameters,
-    /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
-    pub checksum: u32,
-}
-
-/// Size of the block in bytes.
-pub const CALIBRATION_BYTES: usize = size_of::<Calibration>();
 
 /// Why a calibration is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -189,36 +127,6 @@ impl Calibration {
     #[must_use]
     pub fn nominal() -> Self {
         Self::unsealed_nominal().sealed()
-    }
-
-    /// The same without a checksum, to be filled with something else. Not inlined: the block would take its place on the
-    /// stack of every caller.
-    #[inline(never)]
-    pub(super) fn unsealed_nominal() -> Self {
-        Self {
-            version: CALIBRATION_VERSION,
-            lift: nominal::LIFT,
-            lower: nominal::LOWER,
-            linkage: nominal::LINKAGE,
-            hydraulics: HydraulicParameters::NOMINAL,
-            sensors: SensorParameters::NOMINAL,
-            lock: LockParameters::NOMINAL,
-            operator: OperatorParameters::NOMINAL,
-            motion: MotionParameters::NOMINAL,
-            position: PositionParameters::NOMINAL,
-            rate: RateParameters::NOMINAL,
-            hold: HoldParameters::NOMINAL,
-            saturation: SaturationParameters::NOMINAL,
-            teach: TeachParameters::NOMINAL,
-            current: CurrentParameters::NOMINAL,
-            bus: BusParameters::NOMINAL,
-            remote: RemoteParameters::NOMINAL,
-            draft: DraftParameters::NOMINAL,
-            slip: SlipParameters::NOMINAL,
-            ride: RideParameters::NOMINAL,
-            safety: SafetyParameters::NOMINAL,
-            checksum: 0,
-        }
     }
 
     /// The same block with the checksum that belongs to it.

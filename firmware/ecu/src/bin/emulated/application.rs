@@ -8,8 +8,8 @@ use hitch_protocols::can::Frame;
 
 use crate::flash_file::FlashFile;
 use crate::link::Link;
+use crate::outcome::{Done, Failure};
 use crate::stopwatch::{self, Stopwatch};
-use crate::{Done, Failure};
 
 /// Serial number of the emulated part.
 const SERIAL_NUMBER: u32 = 1;

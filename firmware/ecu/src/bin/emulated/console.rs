@@ -4,17 +4,10 @@
 //! stack.
 
 use crate::host_file::{HostFile, HostFileError};
+use crate::word::Word;
 
 /// Digits of the largest number.
 const MOST_DIGITS: usize = 10;
-
-/// What can be said.
-pub enum Word<'a> {
-    /// Text.
-    Text(&'a str),
-    /// A number.
-    Number(u32),
-}
 
 /// Says it, as far as the console takes it: nobody is left to tell if that fails.
 pub fn print(words: &[Word<'_>]) {

@@ -4,7 +4,7 @@ use core::ffi::CStr;
 
 use cortex_m_semihosting::{nr, syscall};
 
-use crate::console::Word;
+use crate::word::Word;
 
 /// What went wrong with a file of the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,10 +14,12 @@ mod console;
 mod flash_file;
 mod host_file;
 mod link;
+mod outcome;
 mod parts;
 mod stack;
 mod steps;
 mod stopwatch;
+mod word;
 
 use core::hint::spin_loop;
 use core::panic::PanicInfo;
@@ -25,30 +27,11 @@ use core::panic::PanicInfo;
 use cortex_m_rt::{ExceptionFrame, entry, exception};
 use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 
-use hitch_quantities::CalibrationError;
-
-use console::{Word, print};
-use host_file::HostFileError;
+use console::print;
 use link::Link;
+use outcome::{Done, Failure};
 use stopwatch::Stopwatch;
-
-/// Why the image ends early.
-enum Failure {
-    HostFile(HostFileError),
-    Calibration,
-}
-
-impl From<CalibrationError> for Failure {
-    fn from(_: CalibrationError) -> Self {
-        Self::Calibration
-    }
-}
-
-impl From<HostFileError> for Failure {
-    fn from(error: HostFileError) -> Self {
-        Self::HostFile(error)
-    }
-}
+use word::Word;
 
 #[entry]
 fn main() -> ! {
@@ -87,21 +70,6 @@ fn run() -> Result<Done, Failure> {
         true => application::run(&mut link, &stopwatch),
         false => steps::run(&mut link, &stopwatch),
     }
-}
-
-/// What was done.
-#[derive(Default)]
-struct Done {
-    /// Steps or milliseconds.
-    ticks: u32,
-    /// The longest of them, in ticks of the stopwatch; those below are left out if they are told apart.
-    longest: u32,
-    /// The longest of those with a coil on.
-    longest_working: u32,
-    /// The longest of those in which a calibration is stored.
-    longest_storing: u32,
-    /// The longest way from the sampled codes to the pulses, the controller's step in it.
-    longest_control: u32,
 }
 
 fn fail(words: &[Word<'_>]) {

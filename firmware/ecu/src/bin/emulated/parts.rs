@@ -15,9 +15,10 @@ use hitch_quantities::units::{
 };
 use hitch_quantities::{Calibration, CoilCurrents, Inputs, ValidCalibration};
 
-use crate::Failure;
-use crate::console::{Word, print};
+use crate::console::print;
+use crate::outcome::Failure;
 use crate::stopwatch::Stopwatch;
+use crate::word::Word;
 
 /// From no flow to beyond saturation, ul/s.
 const FLOWS: core::ops::RangeInclusive<i32> = 0..=1_000_000;

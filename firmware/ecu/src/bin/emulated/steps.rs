@@ -9,8 +9,8 @@ use hitch_quantities::signals::INPUT_BYTES;
 use hitch_quantities::{Calibration, Inputs, Outputs};
 
 use crate::link::Link;
+use crate::outcome::{Done, Failure};
 use crate::stopwatch::Stopwatch;
-use crate::{Done, Failure};
 
 /// Steps until the input ends.
 #[inline(never)]

@@ -4,6 +4,7 @@
 //! checked against the reference manuals (RM0090 for the STM32F405, RM0440 for the STM32G474).
 
 mod clock;
+mod clock_source;
 mod coils;
 mod converters;
 mod factory_reference;
@@ -36,12 +37,13 @@ compile_error!(
 use hitch_ecu::FlashRegions;
 
 pub use clock::Clock;
+pub use clock_source::Source;
 pub use coils::{Coils, cut, run};
 pub use converters::Converters;
 pub use factory_reference::scaling;
 pub use flash::DataFlash;
 pub use image_check::ImageCheck;
-pub use oscillators::{Oscillators, Source};
+pub use oscillators::Oscillators;
 pub use part::Can;
 pub use part::flash::note_damaged_read;
 pub use register_check::RegisterCheck;

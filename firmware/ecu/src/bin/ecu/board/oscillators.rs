@@ -7,6 +7,7 @@
 //! The internal oscillator is the measure, and its data sheet says how good it is. Limits narrower than that would refuse a sound
 //! board in the cold. Within the limits, an error of the crystal looks the same as an error of the internal oscillator.
 
+use super::clock_source::Source;
 use super::part;
 use super::part::slow_clock;
 
@@ -22,15 +23,6 @@ const READINGS_HZ: [u32; 2] = [
 const MEASURING_PER_MILLE: u32 = 3;
 /// Polls for an edge, at least 10 cycles each: 12 ms and more at 16 MHz.
 const MOST_POLLS: u32 = 20_000;
-
-/// What the main clock is made from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// The crystal.
-    Crystal,
-    /// The internal oscillator: accurate enough for reports, not for driving the coils.
-    Internal,
-}
 
 /// Result of the measurement.
 #[derive(Clone, Copy, Debug)]

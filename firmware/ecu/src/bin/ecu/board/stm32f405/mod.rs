@@ -15,7 +15,7 @@ use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Pllm, Plln, Pllp, Pllq, Pllsrc, Ppre, Sw};
 use stm32_metapac::{FLASH, RCC};
 
-use crate::board::oscillators::Source;
+use crate::board::clock_source::Source;
 
 /// TIM1 on PA8 and PA9 (data sheet, table 9).
 pub const TIMER_FUNCTION: u8 = 1;

@@ -10,13 +10,11 @@ use stm32_metapac::{ADC12_COMMON, ADC345_COMMON};
 use super::board_data::ANALOG_PINS;
 pub use super::board_data::SEQUENCES;
 use super::delay::CycleDelay;
+use super::factory_reference::REFERENCE;
 use crate::board::pins;
 
 /// TIM1_TRGO for ADC1 and 2 and for ADC3 (RM0440, tables of `JEXTSEL`).
 const TIM1_TRGO: u8 = 0;
-/// VREFINT, on ADC1 and ADC3.
-pub const REFERENCE: u8 = 18;
-
 /// Sets the pins to analogue mode, and the clock of the converters.
 pub fn start_pins_and_clocks() {
     for (port, pin) in ANALOG_PINS {

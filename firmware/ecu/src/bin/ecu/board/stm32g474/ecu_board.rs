@@ -1,12 +1,12 @@
 //! The ECU's board with an STM32G474RE: crystal, converter inputs and scaling.
 
 use hitch_ecu::{AdcCode, BoardScaling, Signal};
-use hitch_quantities::calibration::class::Fitted;
+use hitch_quantities::calibration::fitted::Fitted;
 use stm32_metapac::gpio::Gpio;
 use stm32_metapac::rcc::vals::Pllm;
 use stm32_metapac::{GPIOA, GPIOB, GPIOC};
 
-use super::converters::REFERENCE;
+use super::factory_reference::REFERENCE;
 
 /// The crystal that the image is made for.
 pub const CRYSTAL_HZ: u32 = 8_000_000;

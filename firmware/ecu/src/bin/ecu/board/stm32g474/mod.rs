@@ -23,7 +23,7 @@ use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Fdcansel, Hpre, Pllm, Plln, Pllr, Pllsrc, Sw};
 use stm32_metapac::{FLASH, PWR, RCC, SYSCFG};
 
-use crate::board::oscillators::Source;
+use crate::board::clock_source::Source;
 
 /// TIM1 on PA8 and PA9 (data sheet, table 13).
 pub const TIMER_FUNCTION: u8 = 6;

@@ -4,13 +4,13 @@
 //! dial on PC3, and there is no second track. Potentiometers and supplies are taken from the board's 3.3 V, without dividers.
 
 use hitch_ecu::{AdcCode, BoardScaling, Signal};
-use hitch_quantities::calibration::class::Fitted;
+use hitch_quantities::calibration::fitted::Fitted;
 use hitch_quantities::units::MilliVolt;
 use stm32_metapac::gpio::Gpio;
 use stm32_metapac::rcc::vals::Pllm;
 use stm32_metapac::{GPIOA, GPIOB, GPIOC};
 
-use super::converters::REFERENCE;
+use super::factory_reference::REFERENCE;
 
 /// X3, the crystal of the board.
 pub const CRYSTAL_HZ: u32 = 24_000_000;
