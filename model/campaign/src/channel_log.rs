@@ -8,11 +8,12 @@ use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 
-use crate::CampaignError;
 use crate::columns::{ColumnSettings, Source, unassigned};
+use crate::contents::{LogColumn, without_group};
+use crate::recorded::CampaignError;
+use crate::run_columns::{LIFT, LIFTS, TIME};
 use crate::series::Series;
-use crate::survey::{LogColumn, without_group};
-use crate::table::{Cells, LIFT, LIFTS, TIME, Table};
+use crate::table::{Cells, Table};
 
 /// A channel of a log.
 #[derive(Debug, Clone, PartialEq, Eq)]

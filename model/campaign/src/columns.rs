@@ -12,9 +12,9 @@ use hitch_input::input_error::quote;
 use hitch_input::naming::{nearest, offer_names, unknown_name};
 use hitch_input::toml_reader::TomlTable;
 
-use crate::CampaignError;
+use crate::recorded::CampaignError;
+use crate::run_columns::{COLUMNS, Column, column};
 use crate::scale::{Scale, is_unit_of};
-use crate::table::{COLUMNS, Column, column};
 
 /// Range of raw values.
 const ANY: std::ops::RangeInclusive<f64> = -1e12..=1e12;

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use hitch_input::toml_reader::TomlTable;
 
-use crate::CampaignError;
+use crate::recorded::CampaignError;
 
 /// Largest time after a log's first sample, s: four months.
 const TIME_S: RangeInclusive<f64> = 0.0..=1e7;

@@ -10,10 +10,12 @@ use hitch_plant::{Channel, Linkage};
 use crate::bus_log::BusSettings;
 use crate::columns::ColumnSettings;
 use crate::cut::Cut;
+use crate::file_key::{file_in, file_name};
+use crate::recorded::{Bench, Campaign, CampaignError, Noise, Run};
+use crate::run_log;
 use crate::run_log::Settings;
 use crate::series::median_step_s;
 use crate::table::{LONGEST_STEP_S, LogNotes, Table};
-use crate::{Bench, Campaign, CampaignError, Noise, Run, run_log};
 
 /// Key of the files in which a recording continues.
 const THEN: &str = "then";
@@ -275,38 +277,6 @@ fn called<'f>(file: &'f str, files: &[&str]) -> &'f str {
         others.map(Path::new).any(|other| other.ends_with(name))
     };
     name.filter(|name| !is_shared(name)).unwrap_or(file)
-}
-
-/// The path of the file that `key` names.
-///
-/// # Errors
-/// The file does not exist.
-pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, CampaignError> {
-    let file = file_name(table, key)?;
-    let path = dir.join(file);
-    if path.exists() {
-        return Ok(path);
-    }
-    let what = match Path::new(file).is_absolute() {
-        true => format!("file {} does not exist", quote(file)),
-        false => format!("the folder contains no file {}", quote(file)),
-    };
-    let mend = match key {
-        "file" => "correct the name, or delete this [[run]] block",
-        _ => "correct the name, or delete the line",
-    };
-    Err(table.error_at(key, what, mend))
-}
-
-/// A file's name: a path relative to the campaign's folder, or absolute.
-fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, CampaignError> {
-    let file = table.required_text(key)?;
-    if !file.is_empty() && !file.chars().any(char::is_control) {
-        return Ok(file);
-    }
-    let what = format!("{} is not the name of a file", quote(file));
-    let mend = "give a path relative to the campaign's folder, or an absolute path";
-    Err(table.error_at(key, what, mend))
 }
 
 /// Test stand of a run, and its oil temperature if stated, degrees Celsius.

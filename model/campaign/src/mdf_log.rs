@@ -13,11 +13,11 @@ use hitch_input::input_error::{InputError, quote};
 use hitch_input::source_file::SourceFile;
 use hitch_mdf_file::{Recording, unit_of_conversion};
 
-use crate::CampaignError;
 use crate::channel_log::{ChannelFile, LogChannel};
 use crate::columns::Source;
+use crate::contents::OF_GROUP;
+use crate::recorded::CampaignError;
 use crate::series::Series;
-use crate::survey::OF_GROUP;
 use crate::time_base::unit_size_s;
 
 /// Byte offset of the version in a file.

@@ -12,9 +12,11 @@ use crate::columns::ColumnSettings;
 use crate::cut::Cut;
 use crate::mdf_log::MdfFile;
 use crate::number_log::NumberLog;
+use crate::recorded::{Bench, CampaignError, Run};
+use crate::run_columns::{LIFT, LOWER, OIL_TEMPERATURE, TIME};
 use crate::scale::nominal_linkage;
-use crate::table::{LIFT, LONGEST_STEP_S, LOWER, OIL_TEMPERATURE, TIME, Table};
-use crate::{Bench, CampaignError, Run, bus_log, channel_log, csv_log, mdf_log};
+use crate::table::{LONGEST_STEP_S, Table};
+use crate::{bus_log, channel_log, csv_log, mdf_log};
 
 /// Oil temperature of a run without a stated or logged one, degrees Celsius: that of the paper's valve tables.
 const ASSUMED_OIL_TEMPERATURE_C: f64 = 40.0;

@@ -7,7 +7,7 @@ use hitch_input::input_error::quote;
 use hitch_input::written_unit::{above_air, parsed, spelling};
 use hitch_plant::{Channel, Linkage, Model};
 
-use crate::table::{Column, OIL_TEMPERATURE, TIME};
+use crate::run_columns::{Column, OIL_TEMPERATURE, TIME};
 
 /// Kelvin at 0 degrees Celsius.
 const ZERO_C_K: f64 = 273.15;
@@ -136,7 +136,7 @@ pub fn nominal_linkage() -> &'static Linkage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{LIFT, column};
+    use crate::run_columns::{LIFT, column};
 
     fn converted(value: f64, unit: &str, name: &str) -> f64 {
         let scale = Scale::of(unit, column(name).unwrap());

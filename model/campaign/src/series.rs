@@ -1,6 +1,6 @@
 //! The received samples of one signal.
 
-use crate::table::{LIFT, LOWER};
+use crate::run_columns::{LIFT, LOWER};
 
 /// Part of the steps that rise in a column of times: one that does not rise everywhere is refused later, with its line.
 const RISES: f64 = 0.9;

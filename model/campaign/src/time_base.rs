@@ -5,9 +5,9 @@
 
 use hitch_input::written_unit::spelling;
 
+use crate::run_columns::TIMES as TIME_COLUMN;
 use crate::scale::Scale;
 use crate::series::rises;
-use crate::table::TIMES as TIME_COLUMN;
 
 /// Part by which the number of samples of a column may fall short of that of its times: dropouts.
 const FITS: f64 = 0.9;

@@ -16,9 +16,9 @@
 
 use hitch_input::source_file::SourceFile;
 
-use crate::CampaignError;
 use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
 use crate::bus_log::line::{Ending, Line, Word, each_line};
+use crate::recorded::CampaignError;
 
 /// First words of lines that contain no event.
 const HEADINGS: [&str; 7] = ["date", "base", "internal", "no", "Begin", "End", "previous"];

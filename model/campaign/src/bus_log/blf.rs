@@ -15,9 +15,9 @@ use hitch_input::file_kind;
 use hitch_input::little_endian::{u16_at, u32_at, u64_at};
 use hitch_input::source_file::SourceFile;
 
-use crate::CampaignError;
 use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
 use crate::bus_log::line::Ending;
+use crate::recorded::CampaignError;
 
 /// Begin of an object.
 const OBJECT: &[u8] = b"LOBJ";

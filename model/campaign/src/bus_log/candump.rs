@@ -12,9 +12,9 @@
 
 use hitch_input::source_file::SourceFile;
 
-use crate::CampaignError;
 use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
 use crate::bus_log::line::{Ending, Line, Word, each_line};
+use crate::recorded::CampaignError;
 
 /// Digits of an identifier of 11 bits, and of 29.
 const STANDARD_DIGITS: usize = 3;

@@ -10,11 +10,11 @@ use hitch_input::input_error::{InputError, Position, quote};
 use hitch_input::naming::offer_names;
 use hitch_input::source_file::SourceFile;
 
-use crate::CampaignError;
 use crate::bus_log::frame::{Id, MOST_BYTES, group};
 use crate::bus_log::signal::{Bits, Kind, Selector, Signal};
+use crate::recorded::CampaignError;
+use crate::run_columns::{COLUMNS, Column, TIMES};
 use crate::scale::Scale;
-use crate::table::{COLUMNS, Column, TIMES};
 
 /// The description of the project's ECU.
 const OF_ECU: &str = include_str!("../../../../firmware/hitch.dbc");
@@ -327,7 +327,7 @@ fn not_dbc(source: &SourceFile, error: &DbcError) -> InputError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{LIFT, column};
+    use crate::run_columns::{LIFT, column};
 
     #[test]
     fn the_project_s_own_description_is_read() {

@@ -1,6 +1,6 @@
 //! A logged frame, and its receiver.
 
-use crate::CampaignError;
+use crate::recorded::CampaignError;
 
 /// Data bytes of the longest frame, of CAN FD.
 pub const MOST_BYTES: usize = 64;

@@ -10,9 +10,9 @@ use csv::StringRecord;
 use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
-use crate::CampaignError;
 use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
-use crate::csv_log::dialect::{MARKS, rows};
+use crate::csv_log::text_rows::{MARKS, rows};
+use crate::recorded::CampaignError;
 use crate::table::cell_error;
 
 /// The cells of a frame in a row.

@@ -3,7 +3,7 @@
 use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
-use crate::CampaignError;
+use crate::recorded::CampaignError;
 
 /// Largest time stamp, s: covers any date, and is still exact to a microsecond.
 const LATEST_S: f64 = 1e10;

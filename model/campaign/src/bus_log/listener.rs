@@ -3,13 +3,13 @@
 use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
-use crate::CampaignError;
 use crate::bus_log::clock::Clock;
 use crate::bus_log::description::Match;
 use crate::bus_log::frame::{Frame, FrameSink, Id, group};
 use crate::bus_log::signal::Signal;
+use crate::recorded::CampaignError;
+use crate::run_columns::Column;
 use crate::series::Series;
-use crate::table::Column;
 
 /// A column and its signal.
 #[derive(Debug, Clone)]

@@ -6,10 +6,10 @@ use falcon_mdf::Mf4File;
 use hitch_input::source_file::SourceFile;
 use hitch_mdf_file::Recording;
 
-use crate::CampaignError;
 use crate::bus_log::frame::{Frame, FrameSink, Id};
 use crate::bus_log::line::Ending;
 use crate::mdf_log::is_mdf;
+use crate::recorded::CampaignError;
 
 /// Whether a file contains frames, and no channels beside them.
 pub fn is_one(path: &Path) -> bool {

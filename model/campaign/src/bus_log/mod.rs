@@ -28,9 +28,10 @@ use std::sync::Arc;
 pub use settings::BusSettings;
 pub use survey::{Signals, signals};
 
-use crate::CampaignError;
+use crate::recorded::CampaignError;
+use crate::run_columns::{LIFT, LOWER};
 use crate::series::Series;
-use crate::table::{Cells, LIFT, LOWER, Table};
+use crate::table::{Cells, Table};
 use frame::FrameSink;
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;

@@ -19,11 +19,11 @@ use hitch_input::source_file::SourceFile;
 use hitch_input::toml_reader::TomlTable;
 use hitch_plant::Channel;
 
-use crate::CampaignError;
 use crate::bus_log::description::{Description, Fault};
 use crate::bus_log::listener::{Listener, Message, Sampled};
-use crate::manifest::file_in;
-use crate::table::{COLUMNS, Column, LIFT, LOWER, TIME, column};
+use crate::file_key::file_in;
+use crate::recorded::CampaignError;
+use crate::run_columns::{COLUMNS, Column, LIFT, LOWER, TIME, column};
 
 /// The signals of the project's ECU.
 const OF_ECU: [(&str, &str); 5] = [

@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use hitch_input::source_file::SourceFile;
 
-use crate::CampaignError;
 use crate::bus_log::description::Description;
 use crate::bus_log::frame::{Frame, FrameSink, Id};
 use crate::bus_log::{Format, read_frames};
-use crate::survey::LogColumn;
-use crate::table::COLUMNS;
+use crate::contents::LogColumn;
+use crate::recorded::CampaignError;
+use crate::run_columns::COLUMNS;
 
 /// The identifiers of a log, with the number of frames of each.
 #[derive(Debug, Default)]

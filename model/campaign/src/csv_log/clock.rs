@@ -2,7 +2,7 @@
 
 use chrono::{DateTime, Datelike as _, NaiveDate, NaiveTime, Timelike as _};
 
-use crate::csv_log::dialect::Decimals;
+use crate::csv_log::decimals::Decimals;
 use crate::scale::Scale;
 
 /// Seconds per day.

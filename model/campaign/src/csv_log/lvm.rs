@@ -13,7 +13,8 @@
 
 use csv::StringRecord;
 
-use crate::csv_log::dialect::{Decimals, Header, MARKS, rows};
+use crate::csv_log::decimals::Decimals;
+use crate::csv_log::text_rows::{Header, MARKS, rows};
 
 /// Begin of a file.
 const MARK: &str = "LabVIEW Measurement";

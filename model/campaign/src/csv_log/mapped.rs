@@ -6,14 +6,15 @@ use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 
-use crate::CampaignError;
 use crate::columns::{ColumnSettings, Source, unassigned};
 use crate::csv_log::clock::Times;
-use crate::csv_log::dialect::is_missing;
+use crate::csv_log::decimals::is_missing;
 use crate::csv_log::layout::{Layout, Row};
+use crate::recorded::CampaignError;
+use crate::run_columns::{Column, LIFT, TIMES};
 use crate::scale::{Scale, is_time};
 use crate::series::Series;
-use crate::table::{Cells, Column, LIFT, TIMES, Table};
+use crate::table::{Cells, Table};
 use crate::time_base::{self, base_of};
 
 /// A mapped column.

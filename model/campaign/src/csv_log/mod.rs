@@ -1,21 +1,23 @@
 //! Text tables: the project's own format, whose header has the columns' names, and any other by `[columns]`.
 pub mod clock;
+pub mod decimals;
 pub mod dialect;
 mod layout;
 mod lvm;
 mod mapped;
 mod native;
+pub mod text_rows;
 
 use std::sync::Arc;
 
-use dialect::Header;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 use layout::Layout;
+use text_rows::Header;
 
-use crate::CampaignError;
 use crate::columns::{ColumnSettings, offer_columns};
-use crate::survey::{LogColumn, Survey};
+use crate::contents::{LogColumn, Survey};
+use crate::recorded::CampaignError;
 use crate::table::Table;
 
 /// Reads a table for a hitch with this linkage; `settings` map its columns unless it has the project's own header.

@@ -8,12 +8,13 @@ use hitch_input::naming::{offer_names, unknown_name};
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 
-use crate::CampaignError;
 use crate::columns::ColumnSettings;
-use crate::csv_log::dialect::{Header, MARKS, rows};
 use crate::csv_log::layout::Layout;
 use crate::csv_log::mapped;
-use crate::table::{COLUMNS, Column, Table, cell_error, column};
+use crate::csv_log::text_rows::{Header, MARKS, rows};
+use crate::recorded::CampaignError;
+use crate::run_columns::{COLUMNS, Column, column};
+use crate::table::{Table, cell_error};
 
 /// Reads the table. The format is defined: nothing is assumed about its shape, its units or its numbers.
 ///

@@ -11,7 +11,7 @@
 
 use hitch_mat_file::{Value, variables};
 
-use super::{Fault, NumberColumn};
+use super::number_column::{Fault, NumberColumn};
 use crate::time_base::unit_size_s;
 
 /// Most columns of a matrix: larger ones are no logs.

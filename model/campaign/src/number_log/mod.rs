@@ -3,6 +3,7 @@
 //! A column either has its own times (a time series of MATLAB), or those of the column that is assigned to `time_s`.
 
 mod mat_columns;
+mod number_column;
 mod parquet;
 
 use std::path::Path;
@@ -11,30 +12,16 @@ use hitch_input::file_kind;
 use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
-use crate::CampaignError;
+use number_column::NumberColumn;
+
 use crate::channel_log::{self, ChannelFile, LogChannel};
 use crate::columns::{Source, unassigned};
+use crate::contents::{LogColumn, Survey};
 use crate::csv_log::clock::{DateOrder, Times};
+use crate::recorded::CampaignError;
+use crate::run_columns::TIMES;
 use crate::series::Series;
-use crate::survey::{LogColumn, Survey};
-use crate::table::TIMES;
 use crate::time_base::{self, Seen};
-
-/// Most numbers of a file: as text they would fill the longest file that is read.
-const MOST_NUMBERS: usize = 64 << 20;
-
-/// A column of numbers.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct NumberColumn {
-    name: String,
-    unit: Option<String>,
-    /// NaN where there is none.
-    values: Vec<f64>,
-    /// Its own times as logged; `None` if it has those of another column.
-    times: Option<Vec<f64>>,
-    /// Whether the file states the unit of its own times, which are in s.
-    states_times: bool,
-}
 
 /// A file, read completely.
 #[derive(Debug)]
@@ -47,9 +34,6 @@ pub struct NumberLog {
     /// What is assumed about the times, one line each.
     notes: Vec<String>,
 }
-
-/// A fault of a file: what is wrong, and how to mend it.
-type Fault = (String, &'static str);
 
 impl NumberLog {
     /// Reads a file; `None` if it is of another format, by its name and first bytes.

@@ -13,8 +13,8 @@ use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use super::{Fault, MOST_NUMBERS, NumberColumn};
-use crate::csv_log::dialect::HeaderCell;
+use super::number_column::{Fault, MOST_NUMBERS, NumberColumn};
+use crate::csv_log::text_rows::HeaderCell;
 
 const MEND: &str = "write it again, with the compression snappy or gzip or without one, or as CSV: pandas.read_parquet(...).to_csv(...)";
 
