@@ -53,7 +53,7 @@ impl Effect for Described {
     }
 
     fn rank(&self) -> usize {
-        crate::catalogue::rank(self.id)
+        crate::order::rank(self.id)
     }
 
     fn needs(&self) -> Option<Dynamics> {

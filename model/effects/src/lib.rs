@@ -15,6 +15,7 @@
 pub mod catalogue;
 mod described;
 pub mod expression;
+mod order;
 mod term_effect;
 
 pub use catalogue::{CATALOGUE, available, find};

@@ -7,7 +7,8 @@ use nalgebra::DVector;
 
 use crate::constants::free::FreeConstants;
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
-use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
+use crate::data::experiment::Experiment;
+use crate::data::nuisance::{LOAD_PRIOR, Nuisance};
 
 /// A Gauss-Newton step with Levenberg-Marquardt damping.
 #[derive(Debug, Clone)]

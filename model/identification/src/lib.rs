@@ -34,4 +34,4 @@ pub use estimation::fit::Fit;
 pub use explanation::diagnosis::diagnose;
 pub use explanation::explain::{Explanation, Verdict, explain, explain_with};
 pub use search::candidates::Progress;
-pub use search::subset::Options;
+pub use search::options::Options;

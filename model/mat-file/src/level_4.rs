@@ -2,7 +2,7 @@
 
 use hitch_input::little_endian::u32_at;
 
-use crate::{MOST_NUMBERS, Value};
+use crate::value::{MOST_NUMBERS, Value};
 
 /// Bytes of the header of a matrix.
 const HEADER: usize = 20;

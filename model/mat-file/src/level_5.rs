@@ -5,7 +5,7 @@ use std::io::Read as _;
 use flate2::read::ZlibDecoder;
 use hitch_input::little_endian::{u16_at, u32_at};
 
-use crate::{MOST_NUMBERS, Value};
+use crate::value::{MOST_NUMBERS, Value};
 
 /// Bytes of the header.
 const HEADER: usize = 128;

@@ -49,7 +49,9 @@
 #![forbid(unsafe_code)]
 
 mod constants;
+mod format;
 mod meaning;
+mod quoted;
 mod read;
 mod round_trip;
 mod scalars;
@@ -59,10 +61,10 @@ mod terms;
 mod variant;
 mod write;
 
+pub use quoted::quoted;
 pub use scalars::{Scalar, scalars, with_scalars};
 pub use starting_points::{dynamic, nominal};
 pub use template::{Template, Valve};
-pub use write::quoted;
 
 use std::path::Path;
 
@@ -71,6 +73,8 @@ use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Model;
 
+use starting_points::starting_point;
+
 /// A term as defined in a model file.
 #[must_use]
 pub fn term_text(term: &TermEffect) -> String {
@@ -78,9 +82,6 @@ pub fn term_text(term: &TermEffect) -> String {
     terms::write(&mut text, term);
     text.trim_start().to_owned()
 }
-
-/// The supported format version.
-const FORMAT: f64 = 1.0;
 
 /// Reads a model file.
 ///
@@ -95,7 +96,7 @@ pub fn read(path: &Path) -> Result<Model, InputError> {
 /// # Errors
 /// A fault, with line and column.
 pub fn parse(source: &SourceFile) -> Result<Model, InputError> {
-    read::model(source)
+    read::model(source, starting_point)
 }
 
 /// A built-in model by its name (`nominal`, `dynamic`), or else the model in the file with that name.
@@ -121,12 +122,4 @@ pub fn named(name: &str) -> Result<Model, InputError> {
 #[must_use]
 pub fn to_toml(model: &Model) -> String {
     write::model(model)
-}
-
-fn starting_point(name: &str) -> Option<Model> {
-    match name {
-        "nominal" => Some(nominal()),
-        "dynamic" => Some(dynamic()),
-        _ => None,
-    }
 }

@@ -14,15 +14,19 @@ use hitch_plant::{
 use crate::constants::{
     CURRENT, CURVES, Constant, Curve, FLOW, TABLES, Variant, clear_others, unset,
 };
-use crate::{FORMAT, starting_point, terms, variant};
+use crate::format::FORMAT;
+use crate::{terms, variant};
 
 /// Range of the currents of a flow curve, A.
 const CURRENT_A: std::ops::RangeInclusive<f64> = 0.0..=20.0;
 /// Range of the flows of a flow curve, l/min.
 const FLOW_LPM: std::ops::RangeInclusive<f64> = 0.0..=1000.0;
 
-/// The model of a file.
-pub fn model(source: &SourceFile) -> Result<Model, InputError> {
+/// The model of a file, whose base `starting_point` finds by its name.
+pub fn model(
+    source: &SourceFile,
+    starting_point: impl Fn(&str) -> Option<Model>,
+) -> Result<Model, InputError> {
     let top = TomlTable::parse(source)?;
     let format = top.required_number("format", f64::MIN..=f64::MAX)?;
     if format != FORMAT {
@@ -36,7 +40,7 @@ pub fn model(source: &SourceFile) -> Result<Model, InputError> {
         ]
         .concat(),
     )?;
-    let base = base(&top)?;
+    let base = base(&top, starting_point)?;
     let complete = base.is_some();
     let mut constants = base.map_or_else(unset, |base| base.constants().clone());
     constants.dynamics = dynamics(&top, complete.then_some(constants.dynamics))?;
@@ -55,7 +59,10 @@ pub fn model(source: &SourceFile) -> Result<Model, InputError> {
 }
 
 /// The base model of the file.
-fn base(top: &TomlTable<'_>) -> Result<Option<Model>, InputError> {
+fn base(
+    top: &TomlTable<'_>,
+    starting_point: impl Fn(&str) -> Option<Model>,
+) -> Result<Option<Model>, InputError> {
     let Some(name) = top.text("base")? else {
         return Ok(None);
     };

@@ -11,8 +11,9 @@ use crate::constants::{
     CONSTANTS, CURVES, CYLINDER_COUNT, Constant, Had, KINDS, TABLES, Variant, clear_others,
 };
 use crate::meaning::meaning_of;
+use crate::quoted::quoted;
 use crate::round_trip::decimal;
-use crate::write::{curve_lines, quoted, variant_lines};
+use crate::write::{curve_lines, variant_lines};
 
 /// Name of the pump's kind.
 const PUMP_KIND: &str = "pump.kind";

@@ -9,8 +9,8 @@ use hitch_input::naming::offer_names;
 use hitch_input::toml_reader::TomlTable;
 use hitch_plant::{Effect, Place};
 
+use crate::quoted::quoted;
 use crate::round_trip::decimal;
-use crate::write::quoted;
 
 /// Reads the terms of a file.
 pub fn read(top: &TomlTable<'_>) -> Result<Vec<&'static dyn Effect>, InputError> {

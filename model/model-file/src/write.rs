@@ -10,6 +10,7 @@ use crate::constants::{
     CURRENT, CURVES, CYLINDERS, Curve, FLOW, KIND, KINDS, LINKAGE_COLUMNS, M_PER_MM, RAD_PER_DEG,
     TABLES, Variant,
 };
+use crate::quoted::quoted;
 use crate::round_trip::decimal;
 use crate::terms;
 
@@ -101,21 +102,4 @@ fn write_effect(text: &mut String, added: &AddedEffect) {
     for (parameter, value) in added.effect.parameters().iter().zip(&added.values) {
         let _ = writeln!(text, "{} = {}", parameter.key, decimal(*value, 1.0));
     }
-}
-
-/// A TOML basic string.
-#[must_use]
-pub fn quoted(text: &str) -> String {
-    let mut quoted = String::from('"');
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => {
-                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
-            }
-            c => quoted.push(c),
-        }
-    }
-    quoted.push('"');
-    quoted
 }

@@ -11,7 +11,7 @@
 //!    ([`RunConditions`](hitch_plant::hooks::effect_hooks::RunConditions)). It attaches numbers, closures or small
 //!    components with state to the [`EffectHooks`](hitch_plant::hooks::effect_hooks::EffectHooks), in SI units. If no
 //!    hook is suitable, add one to `EffectHooks` and evaluate it in the component concerned.
-//! 4. Add one `mod` and one line in [`CATALOGUE`].
+//! 4. Add one `mod`, one line in [`CATALOGUE`], and the id in `order.rs`.
 //!
 //! If the literature has two equations for one effect, each is an effect of its own with the same id and a `form`; the
 //! usual one has none. A search tries all forms and keeps the best, see `oil_viscosity.rs` and `spool_stiction.rs`.
@@ -54,8 +54,7 @@ mod viscous_friction;
 
 use hitch_plant::{Effect, Model};
 
-/// Every effect that the project knows, from the coil to the instruments: where several act at one place, they act in
-/// this order.
+/// Every effect that the project knows, in the order in which they act.
 pub static CATALOGUE: &[&dyn Effect] = &[
     &threshold_shift::LIFT,
     &threshold_shift::LOWERING,
@@ -115,12 +114,6 @@ pub static CATALOGUE: &[&dyn Effect] = &[
 #[must_use]
 pub fn find(id: &str) -> Option<&'static dyn Effect> {
     CATALOGUE.iter().copied().find(|effect| effect.id() == id)
-}
-
-/// Index of an effect in the catalogue.
-pub(crate) fn rank(id: &str) -> usize {
-    let found = CATALOGUE.iter().position(|effect| effect.id() == id);
-    found.unwrap_or(CATALOGUE.len())
 }
 
 /// Every effect that can be added to a model: the catalogue, then the model's own terms.

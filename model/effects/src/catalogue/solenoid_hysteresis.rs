@@ -29,7 +29,7 @@ impl Effect for SolenoidHysteresis {
     }
 
     fn rank(&self) -> usize {
-        super::rank(self.id())
+        crate::order::rank(self.id())
     }
 
     fn title(&self) -> &'static str {

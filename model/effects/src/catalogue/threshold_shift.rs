@@ -54,7 +54,7 @@ impl Effect for ThresholdShift {
     }
 
     fn rank(&self) -> usize {
-        super::rank(self.id())
+        crate::order::rank(self.id())
     }
 
     fn title(&self) -> &'static str {

@@ -14,6 +14,7 @@
 //! [place](hitch_plant::Place) where the term acts and its parameters.
 
 pub mod check;
+mod define;
 pub mod definition;
 pub mod evaluate;
 pub mod operation;

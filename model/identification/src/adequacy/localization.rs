@@ -3,7 +3,8 @@
 use hitch_plant::Channel;
 
 use crate::adequacy::signal::Signal;
-use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::experiment::Experiment;
+use crate::data::ready_run::ReadyRun;
 use crate::estimation::fit::Fit;
 
 /// Number of bins per signal.

@@ -5,7 +5,8 @@ use std::fmt;
 use hitch_campaign::Bench;
 use hitch_plant::Channel;
 
-use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::experiment::Experiment;
+use crate::data::ready_run::ReadyRun;
 
 /// A measured or commanded quantity of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

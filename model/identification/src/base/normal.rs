@@ -12,11 +12,12 @@ use rayon::prelude::*;
 use crate::constants::correction::corrected;
 use crate::constants::parameter::Parameter;
 use crate::constants::prior::Prior;
-use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
+use crate::data::experiment::Experiment;
+use crate::data::nuisance::CurrentShift;
+use crate::data::nuisance::{LOAD_PRIOR, Nuisance};
 use crate::data::problem::Problem;
-use crate::data::trace_cache::CurrentShift;
 use crate::estimate::{CLOCKS, Estimate};
-use crate::estimation::jacobian::{dot, huber, huber_residuals, square_sum};
+use crate::estimation::residual_columns::{dot, huber, huber_residuals, square_sum};
 use crate::estimation::slow_columns::offset_columns_of_run;
 use crate::residuals::whitening::Weights;
 

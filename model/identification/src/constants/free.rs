@@ -7,11 +7,7 @@ use nalgebra::DMatrix;
 
 use crate::constants::directions::Directions;
 use crate::constants::fitted::{CurvePoint, FittedConstant};
-use crate::constants::tolerances::Tolerances;
-
-/// Bound of a coordinate, in prior sigmas: a larger error is outside the tolerances of data sheets, or the accuracy of any
-/// model.
-pub const FARTHEST_SIGMAS: f64 = 3.0;
+use crate::constants::tolerances::{FARTHEST_SIGMAS, Tolerances};
 
 /// Errors of a model's constants, as coordinates along the directions of their prior, in tolerances of data sheets.
 #[derive(Debug, Clone)]

@@ -3,8 +3,8 @@
 use hitch_plant::Constants;
 use nalgebra::{DMatrix, DVector};
 
-use crate::constants::free::FARTHEST_SIGMAS;
 use crate::constants::parameter::{Parameter, THRESHOLD_SIGMA_A};
+use crate::constants::tolerances::FARTHEST_SIGMAS;
 use crate::constants::tolerances::Tolerances;
 
 /// Standard deviation of the error that all points of a flow curve share, and of the one that varies over the current:

@@ -6,8 +6,11 @@ use hitch_plant::{Constants, Model};
 use nalgebra::DVector;
 
 use crate::constants::correction::corrected;
-use crate::constants::free::FARTHEST_SIGMAS;
 use crate::constants::parameter::{Parameter, parameters};
+
+/// Bound of a coordinate, in prior sigmas: a larger error is outside the tolerances of data sheets, or the accuracy of any
+/// model.
+pub const FARTHEST_SIGMAS: f64 = 3.0;
 
 /// Own standard deviations of constants, by their names in a model file (`table.key`): a share of a constant or of a flow
 /// curve, ampere for the currents of a curve. Zero makes a constant exact.

@@ -7,10 +7,10 @@
 use std::ops::Range;
 
 use hitch_plant::Currents;
-use hitch_plant::simulation::Trace;
 
 use crate::data::conditioning::Drive;
-use crate::data::experiment::ReadyRun;
+use crate::data::regime::Regime;
+use crate::data::stretches::Stretches;
 
 /// Longest stretch that is averaged, s.
 const LONGEST_S: f64 = 0.1;
@@ -21,86 +21,41 @@ const AFTER_A_JUMP_S: f64 = 0.12;
 /// Change of a current's slope between two samples that counts as a jump, in sigmas of its noise.
 const JUMP_SIGMAS: f64 = 3.0;
 
-/// Stretches of samples of a run, one per sample of the condensed run.
-#[derive(Debug, Clone)]
-pub(crate) struct Stretches(Vec<Range<usize>>);
-
-impl Stretches {
-    /// The stretches of a run whose currents have this noise, one sigma, A.
-    pub fn of(run: &ReadyRun, noise: Currents) -> Self {
-        let samples = run.len();
-        let jumps = jumps(&run.drive, noise);
-        let mut stretches: Vec<Range<usize>> = Vec::new();
-        let mut jumped_s = f64::NEG_INFINITY;
-        let time_s = &run.drive.time_s;
-        for sample in 0..samples {
-            if jumps[sample] {
-                jumped_s = time_s[sample];
-            }
-            let straight = |stretch: &Range<usize>| {
-                stretch.start > 0
-                    && sample + 1 < samples
-                    && !jumps[sample]
-                    && !jumps[sample + 1]
-                    && time_s[sample] - jumped_s > AFTER_A_JUMP_S
-                    && time_s[sample + 1] - time_s[stretch.start] < LONGEST_S * (1.0 + 1e-6)
-                    && time_s[stretch.start] - jumped_s > AFTER_A_JUMP_S
-                    && !run.drive.turns_before(sample)
-                    && run.regimes[sample] == run.regimes[stretch.start]
-                    && run.compares_alike(stretch.start, sample)
-            };
-            match stretches.last_mut() {
-                Some(last) if straight(last) => last.end = sample + 1,
-                _ => stretches.push(sample..sample + 1),
-            }
+/// The stretches of a run whose currents have this noise, one sigma, A. `alike` tells whether two samples have the same
+/// measured channels.
+pub(crate) fn condensed(
+    drive: &Drive,
+    regimes: &[Regime],
+    noise: Currents,
+    alike: impl Fn(usize, usize) -> bool,
+) -> Stretches {
+    let samples = regimes.len();
+    let jumps = jumps(drive, noise);
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    let mut jumped_s = f64::NEG_INFINITY;
+    let time_s = &drive.time_s;
+    for sample in 0..samples {
+        if jumps[sample] {
+            jumped_s = time_s[sample];
         }
-        Self(stretches)
-    }
-
-    /// Number of stretches.
-    pub fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    /// The first sample of each stretch.
-    pub fn firsts(&self) -> impl Iterator<Item = usize> {
-        self.0.iter().map(|stretch| stretch.start)
-    }
-
-    /// Number of samples in each stretch.
-    pub fn sizes(&self) -> Vec<f64> {
-        self.0.iter().map(|stretch| stretch.len() as f64).collect()
-    }
-
-    /// Mean over each stretch.
-    pub fn means(&self, values: &[f64]) -> Vec<f64> {
-        let mean = |stretch: &Range<usize>| {
-            values[stretch.clone()].iter().sum::<f64>() / stretch.len() as f64
+        let straight = |stretch: &Range<usize>| {
+            stretch.start > 0
+                && sample + 1 < samples
+                && !jumps[sample]
+                && !jumps[sample + 1]
+                && time_s[sample] - jumped_s > AFTER_A_JUMP_S
+                && time_s[sample + 1] - time_s[stretch.start] < LONGEST_S * (1.0 + 1e-6)
+                && time_s[stretch.start] - jumped_s > AFTER_A_JUMP_S
+                && !drive.turns_before(sample)
+                && regimes[sample] == regimes[stretch.start]
+                && alike(stretch.start, sample)
         };
-        self.0.iter().map(mean).collect()
-    }
-
-    /// Mean over each stretch of both currents, A.
-    pub fn mean_currents(&self, currents: &[Currents]) -> Vec<Currents> {
-        let mean = |stretch: &Range<usize>| {
-            let share = 1.0 / stretch.len() as f64;
-            let own = currents[stretch.clone()].iter();
-            own.fold(Currents::default(), |sum, current| Currents {
-                lift_a: sum.lift_a + share * current.lift_a,
-                lower_a: sum.lower_a + share * current.lower_a,
-            })
-        };
-        self.0.iter().map(mean).collect()
-    }
-
-    /// Mean over each stretch of every channel of a trace.
-    pub fn mean_trace(&self, trace: &Trace) -> Trace {
-        Trace {
-            channels: std::array::from_fn(|channel| self.means(&trace.channels[channel])),
-            true_angle_deg: self.means(&trace.true_angle_deg),
-            idle_pressure_bar: trace.idle_pressure_bar,
+        match stretches.last_mut() {
+            Some(last) if straight(last) => last.end = sample + 1,
+            _ => stretches.push(sample..sample + 1),
         }
     }
+    Stretches(stretches)
 }
 
 /// Whether a current jumps, per sample.

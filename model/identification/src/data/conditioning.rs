@@ -13,7 +13,7 @@ use std::borrow::Cow;
 
 use hitch_plant::Currents;
 
-use crate::data::condense::Stretches;
+use crate::data::stretches::Stretches;
 
 /// Half-widths of a window to either side of the sample, samples.
 const REACHES: [usize; 7] = [0, 1, 2, 4, 8, 16, 32];

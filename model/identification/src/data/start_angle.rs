@@ -3,29 +3,27 @@
 //! A log with the angle contains it. Otherwise it is estimated from the other channels: the pressure at rest depends on
 //! the linkage's lever arms, and the stops show the remaining travel.
 
-use hitch_campaign::Run;
 use hitch_plant::{Channel, Model};
 
-use crate::data::experiment::{Nuisance, ReadyRun};
-use crate::data::trace_cache::CurrentShift;
-
-/// Samples that a measured start angle is averaged over.
-const START_SAMPLES: usize = 5;
+use crate::data::nuisance::CurrentShift;
+use crate::data::nuisance::Nuisance;
+use crate::data::ready_run::ReadyRun;
 
 /// Number of trial angles minus one between two bounds, and number of refinements of the bounds around the best.
 const TRIED: u32 = 16;
 const ROUNDS: usize = 4;
 
-/// Measured start angle, degree; `None` if the log has no angle.
-pub(crate) fn measured_deg(run: &Run) -> Option<f64> {
-    let angle = run.channel(Channel::RockerAngle)?;
-    let finite = angle.iter().copied().filter(|angle| angle.is_finite());
-    let seen: Vec<f64> = finite.take(START_SAMPLES).collect();
-    (!seen.is_empty()).then(|| seen.iter().sum::<f64>() / seen.len() as f64)
+/// A run, with an estimated start angle if its log has no angle.
+pub(crate) fn started(run: ReadyRun, model: &Model, noise: [f64; 4]) -> ReadyRun {
+    if run.on_hitch() && run.start_angle_deg.is_nan() {
+        run.started_at(likely_deg(&run, model, noise))
+    } else {
+        run
+    }
 }
 
 /// Start angle, degree, with which a model fits the measured channels of a run best.
-pub(crate) fn likely_deg(run: &ReadyRun, model: &Model, noise: [f64; 4]) -> f64 {
+fn likely_deg(run: &ReadyRun, model: &Model, noise: [f64; 4]) -> f64 {
     let left = |start_angle_deg: f64| left(run, model, noise, start_angle_deg);
     let (low, high) = model.linkage().swing_rad();
     let ends = [low.to_degrees(), high.to_degrees()];

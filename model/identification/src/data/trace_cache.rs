@@ -10,7 +10,7 @@ use hitch_plant::simulation::Trace;
 use hitch_plant::{AddedEffect, Constants, Model};
 use quick_cache::sync::Cache;
 
-use crate::data::experiment::Nuisance;
+use crate::data::nuisance::{CurrentShift, Nuisance};
 
 /// Samples of cached traces of all runs together, about 100 MB, and of one run at most, about 5 MB.
 const KEPT_SAMPLES: usize = 2_400_000;
@@ -18,15 +18,6 @@ const KEPT_OF_A_RUN: usize = 120_000;
 
 /// Fewest cached traces of a run, regardless of their length.
 const FEWEST_KEPT: usize = 6;
-
-/// Difference between the currents of a simulation and the conditioned ones.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct CurrentShift {
-    /// Delay, s.
-    pub later_s: f64,
-    /// Shift, in sigmas of the currents.
-    pub spreads: f64,
-}
 
 /// Everything that the trace of a run depends on.
 #[derive(Debug, Clone)]

@@ -5,8 +5,9 @@ use hitch_plant::{AddedEffect, Effect};
 use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{Jacobian, difference, dot, residuals};
+use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
+use crate::estimation::residual_columns::{difference, dot, residuals};
 
 /// A confounded alternative: an effect that would explain the campaign as well in place of another.
 #[derive(Debug, Clone)]

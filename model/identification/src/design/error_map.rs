@@ -7,7 +7,8 @@ use hitch_campaign::{Bench, Run};
 use hitch_model_file::Valve;
 use hitch_plant::{Channel, Currents, Model};
 
-use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::experiment::Experiment;
+use crate::data::ready_run::ReadyRun;
 use crate::design::levels::Levels;
 use crate::design::plan::Manoeuvre;
 use crate::estimation::fit::Fit;

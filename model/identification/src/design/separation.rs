@@ -11,12 +11,15 @@ use hitch_plant::simulation::simulate;
 use hitch_plant::{Effect, Model};
 use nalgebra::DMatrix;
 
-use crate::data::experiment::{Experiment, Nuisance, ReadyRun};
+use crate::data::experiment::Experiment;
+use crate::data::nuisance::Nuisance;
 use crate::data::problem::Problem;
+use crate::data::ready_run::ReadyRun;
 use crate::design::plan::Manoeuvre;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{Jacobian, square_sum, subtract};
+use crate::estimation::jacobian::Jacobian;
+use crate::estimation::residual_columns::{square_sum, subtract};
 use crate::residuals::whitening::Weights;
 use crate::selection::evidence::{expected_inflation, persistence};
 

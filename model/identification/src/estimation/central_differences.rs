@@ -13,7 +13,8 @@ use rayon::prelude::*;
 use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{Jacobian, difference, huber_residuals};
+use crate::estimation::jacobian::Jacobian;
+use crate::estimation::residual_columns::{difference, huber_residuals};
 
 /// Step to either side, as a share of the parameter's value, or of its scale if that is larger.
 const STEP: f64 = 0.01;

@@ -7,10 +7,10 @@
 use rayon::prelude::*;
 
 use crate::data::clocks::{Clocks, LARGEST_OFFSET_S, OFFSET_PRIOR_S};
+use crate::data::nuisance::CurrentShift;
 use crate::data::problem::Problem;
-use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
-use crate::estimation::jacobian::{dot, huber};
+use crate::estimation::residual_columns::{dot, huber};
 use crate::residuals::whitening::Weights;
 
 /// Grid step of the offsets, s: a tenth of the shortest period that a sampling time of 20 ms resolves.

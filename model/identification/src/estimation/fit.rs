@@ -6,8 +6,8 @@
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::clock_synchronisation::synchronised;
-use crate::estimation::jacobian::{huber, residuals, square_sum};
 use crate::estimation::least_squares::{Descent, Moves, descend};
+use crate::estimation::residual_columns::{huber, residuals, square_sum};
 use crate::estimation::slow_columns::load_steps;
 use crate::residuals::whitening::Weights;
 

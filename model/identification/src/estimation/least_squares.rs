@@ -12,7 +12,8 @@ use hitch_plant::SizeResponse;
 use crate::data::problem::Problem;
 use crate::estimate::Step;
 use crate::estimate::{Estimate, Shared};
-use crate::estimation::jacobian::{Jacobian, huber_residuals, square_sum};
+use crate::estimation::jacobian::Jacobian;
+use crate::estimation::residual_columns::{huber_residuals, square_sum};
 use crate::estimation::slow_columns::SlowColumns;
 use crate::residuals::whitening::Weights;
 

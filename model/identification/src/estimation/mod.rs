@@ -8,4 +8,5 @@ pub mod jacobian;
 pub mod least_squares;
 pub mod nuisance_projection;
 pub mod profile_likelihood;
+pub mod residual_columns;
 pub mod slow_columns;

@@ -7,7 +7,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::estimate::{Estimate, Shared, Step};
 use crate::estimation::bounded_minimum::minimum_within;
-use crate::estimation::jacobian::{Jacobian, RunJacobian, dot, square_sum, subtract};
+use crate::estimation::jacobian::{Jacobian, RunJacobian};
+use crate::estimation::residual_columns::{dot, square_sum, subtract};
 
 /// The free columns of a Jacobian and each run's load, prepared for projection.
 pub struct NuisanceProjection<J> {

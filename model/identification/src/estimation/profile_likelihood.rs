@@ -9,8 +9,9 @@
 use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{Jacobian, huber_residuals};
+use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
+use crate::estimation::residual_columns::huber_residuals;
 
 /// Share of the predicted rise of the cost below which the quadratic approximation is rejected.
 const ACCEPTED_SHARE: f64 = 0.5;

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
 use crate::data::experiment::Experiment;
+use crate::data::nuisance::CurrentShift;
 use crate::data::problem::Problem;
-use crate::data::trace_cache::CurrentShift;
 use crate::estimate::{Estimate, Shared};
-use crate::estimation::jacobian::{dot, huber, huber_residuals, quotient};
+use crate::estimation::residual_columns::{dot, huber, huber_residuals, quotient};
 use crate::residuals::whitening::Weights;
 
 /// Step of a channel's clock offset, in prior sigmas.

@@ -16,8 +16,10 @@ use hitch_campaign::Bench;
 use hitch_plant::{Channel, Currents};
 use rayon::prelude::*;
 
-use crate::data::experiment::{Experiment, Nuisance, ReadyRun, Widening};
+use crate::data::experiment::Experiment;
+use crate::data::nuisance::Nuisance;
 use crate::data::problem::Problem;
+use crate::data::ready_run::{ReadyRun, Widening};
 use crate::data::regime::Regime;
 use crate::estimation::fit::Fit;
 use crate::explanation::explain::fit_base;

@@ -10,7 +10,8 @@ use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, fit, refine};
 use crate::explanation::suspected_constants::suspected;
 use crate::search::candidates::Progress;
-use crate::search::subset::{Accuracy, Found, Options, Search};
+use crate::search::options::{Accuracy, Options};
+use crate::search::subset::{Found, Search};
 use crate::selection::constants_evidence::{Comparison, covariance};
 
 /// Rounds of the search with the declared constants before the constants are suspected.

@@ -9,8 +9,9 @@ use rayon::prelude::*;
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{Jacobian, difference, huber, huber_residuals};
+use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
+use crate::estimation::residual_columns::{difference, huber, huber_residuals};
 use crate::search::candidates::absent;
 use crate::selection::evidence::{VISIBLE, detectability};
 

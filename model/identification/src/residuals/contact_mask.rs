@@ -8,7 +8,7 @@ use hitch_plant::simulation::Trace;
 use hitch_plant::solver::root;
 use hitch_plant::{AddedEffect, Dynamics, Model, SizeResponse};
 
-use crate::data::experiment::ReadyRun;
+use crate::data::ready_run::ReadyRun;
 
 /// Samples next to a ground contact or a lift-off in either of two traces of a run. A dynamic model bounces for some
 /// time instead and has no such samples.

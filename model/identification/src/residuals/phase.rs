@@ -7,7 +7,7 @@
 use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Model};
 
-use crate::data::experiment::ReadyRun;
+use crate::data::ready_run::ReadyRun;
 use crate::data::regime::Regime;
 
 /// One sigma of the time by which the ringing of a run's cylinder pressure is early or late at each sample, s, where the simulated

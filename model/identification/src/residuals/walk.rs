@@ -6,7 +6,8 @@
 use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Currents, Model, units};
 
-use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::experiment::Experiment;
+use crate::data::ready_run::ReadyRun;
 
 /// Distance from an end of the swing, degree, within which the hitch rests against the stop.
 const AT_A_STOP_DEG: f64 = 0.2;

@@ -18,10 +18,11 @@ use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Model};
 use rayon::prelude::*;
 
-use crate::data::experiment::{Experiment, ReadyRun, Widening};
+use crate::data::experiment::Experiment;
+use crate::data::nuisance::CurrentShift;
 use crate::data::problem::Problem;
+use crate::data::ready_run::{ReadyRun, Widening};
 use crate::data::regime::Regime;
-use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
 use crate::residuals::contact_mask::contact_mask;
 use crate::residuals::phase::timing_errors_s;

@@ -8,7 +8,8 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::estimate::Estimate;
-use crate::estimation::jacobian::{Jacobian, RunJacobian, dot};
+use crate::estimation::jacobian::{Jacobian, RunJacobian};
+use crate::estimation::residual_columns::dot;
 use crate::search::dictionary_entry::Entry;
 
 /// The quadratic cost `square - 2 pull x + x matrix x` of shares `x`.

@@ -5,15 +5,16 @@ use rayon::prelude::*;
 use crate::data::clocks::Clocks;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate, evaluate_weighted, refine, short_fit};
-use crate::estimation::jacobian::{Jacobian, huber_residuals, square_sum};
+use crate::estimation::jacobian::Jacobian;
 use crate::estimation::least_squares::Descent;
+use crate::estimation::residual_columns::{huber_residuals, square_sum};
 use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
 use crate::search::delays::with_best_delay_split;
 use crate::search::line_search::line_searched;
+use crate::search::options::Options;
 use crate::search::projections::Projections;
 use crate::search::promising_subsets::{CLOSE, LOCAL_MINIMA, NEAR};
-use crate::search::subset::Options;
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Refitted, key, key_of};
 

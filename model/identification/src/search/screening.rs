@@ -9,8 +9,9 @@ use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
-use crate::estimation::jacobian::{Jacobian, difference, huber_residuals};
+use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
+use crate::estimation::residual_columns::{difference, huber_residuals};
 use crate::search::coarse_view::Coarse;
 use crate::search::dictionary_entry::{Entry, Kind};
 use crate::search::scan_cache::Scans;

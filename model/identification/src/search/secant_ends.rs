@@ -2,7 +2,7 @@
 
 use hitch_plant::{AddedEffect, SizeResponse};
 
-use crate::estimation::jacobian::difference;
+use crate::estimation::residual_columns::difference;
 use crate::search::dictionary_entry::{Entry, Kind};
 
 /// Further ends of each form that are kept besides the first ones: those of least cost.

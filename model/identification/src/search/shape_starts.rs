@@ -3,7 +3,7 @@
 use hitch_plant::{AddedEffect, Channel, Effect, Parameter, SizeResponse};
 
 use crate::data::experiment::Experiment;
-use crate::search::size_scan::{Grid, LOCATED, LOCATED_WITHOUT_RINGING, RINGING, SWITCHING};
+use crate::search::size_grid::{Grid, LOCATED, LOCATED_WITHOUT_RINGING, RINGING, SWITCHING};
 
 /// An effect at a multiple of its size.
 pub(crate) fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {

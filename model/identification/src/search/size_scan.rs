@@ -8,132 +8,14 @@
 use hitch_plant::{AddedEffect, Model, Parameter};
 use rayon::prelude::*;
 
-use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
+use crate::data::ready_run::ReadyRun;
 use crate::data::regime::Regime;
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::residuals;
+use crate::estimation::residual_columns::residuals;
 use crate::search::shape_starts::scaled;
-
-/// The grid of a scan.
-pub(crate) struct Grid {
-    /// Smallest and largest size, in typical sizes.
-    sizes: [f64; 2],
-    /// Spacing of the sizes.
-    spacing: Spacing,
-    /// Criterion for the runs that are scanned.
-    informative: Informative,
-    /// Additional fine grid for narrow minima.
-    narrow_minima: Option<NarrowMinima>,
-    /// Half-width of the sizes evaluated on all runs around the results from the informative runs, as a share of the
-    /// size.
-    all_runs: f64,
-    /// Number of values of the first shape parameter over its range, spaced by magnitude if the range is; a fit finds
-    /// the other shape parameters from their values in the hint.
-    shapes: usize,
-    /// Smallest distance between two sizes of a shape, as a share of the size.
-    distance: f64,
-    /// Number of results of the closer scans.
-    best: usize,
-    /// Half-widths of the closer scans, as shares of the size and of the range of a shape parameter.
-    closer: &'static [(f64, f64)],
-    /// Whether it is scanned with a quasi-static model, without pressure ringing, at a tenth of the time.
-    quasi_static: bool,
-    /// Whether secants respond to the effect: it is then absent if they predict almost nothing.
-    pub hinted: bool,
-    /// Largest remaining share of the informative runs' loss for a closer scan. While loads and clocks compensate for
-    /// what is missing, the bounded loss may stay almost as large at the right size.
-    remaining_loss: f64,
-}
-
-/// Fine grid of sizes with the shape at its upper end. A spool that sticks on a ramp and jumps by the whole band
-/// returns to the same places, so the minimum is narrower for smaller bands.
-#[derive(Clone, Copy)]
-struct NarrowMinima {
-    /// Smallest and largest size, in typical sizes.
-    sizes: [f64; 2],
-    /// Relative spacing of the sizes per typical size, and its largest value.
-    finer: f64,
-    coarsest: f64,
-}
-
-/// Spacing of the sizes.
-#[derive(Clone, Copy)]
-enum Spacing {
-    /// A share of the size.
-    Share(f64),
-    /// A constant, in typical sizes.
-    Even(f64),
-}
-
-/// Criterion for the informative runs.
-#[derive(Clone, Copy)]
-enum Informative {
-    /// Runs that a small change of the size changes.
-    Changed,
-    /// Runs in which the model without the effect has large residuals.
-    Failed,
-}
-
-/// For switching effects.
-pub(crate) static SWITCHING: Grid = Grid {
-    sizes: [0.12, 4.0],
-    spacing: Spacing::Share(0.008),
-    informative: Informative::Changed,
-    narrow_minima: Some(NarrowMinima {
-        sizes: [0.25, 3.0],
-        finer: 0.003,
-        coarsest: 0.004,
-    }),
-    all_runs: 0.005,
-    shapes: 3,
-    distance: 0.03,
-    best: 2,
-    closer: &[(0.01, 0.25), (0.002, 0.05), (0.000_4, 0.01)],
-    quasi_static: true,
-    hinted: true,
-    remaining_loss: 0.92,
-};
-
-/// For ringing: a minimum extends over a seventh of the size to either side, so that a descent from the grid needs no
-/// closer scan.
-pub(crate) static RINGING: Grid = Grid {
-    sizes: [0.1, 8.0],
-    spacing: Spacing::Share(0.06),
-    informative: Informative::Changed,
-    narrow_minima: None,
-    all_runs: 0.0,
-    shapes: 5,
-    distance: 0.1,
-    best: 4,
-    closer: &[],
-    quasi_static: false,
-    hinted: false,
-    remaining_loss: f64::INFINITY,
-};
-
-/// For located effects: the hitch resting on or reaching the place is reproduced within a few millimetres, and ringing
-/// there causes one local minimum per period.
-pub(crate) static LOCATED: Grid = Grid {
-    sizes: [0.1, 6.5],
-    spacing: Spacing::Even(0.06),
-    informative: Informative::Failed,
-    narrow_minima: None,
-    all_runs: 0.0,
-    shapes: 5,
-    distance: 0.05,
-    best: 2,
-    closer: &[(0.04, 0.125)],
-    quasi_static: true,
-    hinted: false,
-    remaining_loss: f64::INFINITY,
-};
-
-/// The same without ringing: secants show that something is there, though not its stiffness.
-pub(crate) static LOCATED_WITHOUT_RINGING: Grid = Grid {
-    hinted: true,
-    ..LOCATED
-};
+use crate::search::size_grid::{Grid, Informative, Spacing};
 
 /// Results per shape that are scanned more closely, and in total.
 const PER_SHAPE: usize = 2;

@@ -11,11 +11,10 @@ use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::central_differences::with_central_differences;
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{
-    Jacobian, RunJacobian, difference, huber, huber_residuals, square_sum,
-};
+use crate::estimation::jacobian::{Jacobian, RunJacobian};
 use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::profile_likelihood::ProfileLikelihood;
+use crate::estimation::residual_columns::{difference, huber, huber_residuals, square_sum};
 use crate::estimation::slow_columns::SlowColumns;
 use crate::selection::evidence::{detectability, log_odds, variance_inflation};
 

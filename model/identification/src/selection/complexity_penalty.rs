@@ -5,7 +5,7 @@ use hitch_plant::AddedEffect;
 use crate::data::experiment::Experiment;
 use crate::estimate::Estimate;
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::square_sum;
+use crate::estimation::residual_columns::square_sum;
 use crate::selection::evidence::{VISIBLE, variance_inflation};
 
 /// Number of effects, in their forms, that are tried: correction for multiple testing.

@@ -9,7 +9,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::constants::free::{FARTHEST_SIGMAS, FreeConstants};
+use crate::constants::free::FreeConstants;
+use crate::constants::tolerances::FARTHEST_SIGMAS;
 use crate::data::problem::Problem;
 use crate::estimation::bounded_minimum::minimum_within;
 use crate::estimation::fit::Fit;

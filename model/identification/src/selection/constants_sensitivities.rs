@@ -5,12 +5,14 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
+use crate::data::ready_run::ReadyRun;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{Jacobian, dot, huber};
+use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
+use crate::estimation::residual_columns::{dot, huber};
 use crate::selection::candidate::{jacobian_by, slow_columns};
 
 /// Length of a stretch, s: the errors of a move and of the rest after it are one error, those of two moves are two.

@@ -7,8 +7,9 @@
 
 use rayon::prelude::*;
 
-use crate::data::experiment::{Experiment, ReadyRun};
-use crate::estimation::jacobian::{dot, square_sum};
+use crate::data::experiment::Experiment;
+use crate::data::ready_run::ReadyRun;
+use crate::estimation::residual_columns::{dot, square_sum};
 
 /// Window length of the autocovariances, s.
 const REACH_S: f64 = 2.0;

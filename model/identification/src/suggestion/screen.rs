@@ -7,8 +7,9 @@ use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{Jacobian, dot, huber_residuals};
+use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
+use crate::estimation::residual_columns::{dot, huber_residuals};
 
 /// Size of the secant, in typical sizes: large enough for terms with a threshold, small enough for linear scaling.
 const SIZE: f64 = 0.5;

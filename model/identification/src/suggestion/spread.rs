@@ -2,8 +2,8 @@
 
 use hitch_plant::{Channel, Model, units};
 
-use crate::data::experiment::ReadyRun;
 use crate::data::problem::Problem;
+use crate::data::ready_run::ReadyRun;
 
 /// Quantiles at which the scale of a shape starts.
 pub const QUANTILES: [f64; 3] = [0.2, 0.45, 0.7];

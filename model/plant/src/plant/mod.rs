@@ -4,6 +4,7 @@ mod conditions;
 mod copy;
 mod instruments;
 mod rest;
+mod run_signals;
 
 use crate::components::lag::Lag;
 use crate::constants::Dynamics;
@@ -77,7 +78,7 @@ impl<'m> Plant<'m> {
             flows: Flows::default(),
             input: at_rest,
             reading: Reading::default(),
-            signals: rest::signals_of_run(rig, oil_temperature_c),
+            signals: run_signals::signals_of_run(rig, oil_temperature_c),
         };
         plant.state = plant.state_at_rest();
         if let Rig::Hitch(rig) = rig {

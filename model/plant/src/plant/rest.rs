@@ -1,9 +1,7 @@
 //! The plant at rest, at the start of a run.
 
-use crate::components::oil;
 use crate::constants::Dynamics;
 use crate::hooks::place::Place;
-use crate::hooks::signals::Signals;
 use crate::plant::Plant;
 use crate::solver::root;
 use crate::state::{HitchRig, MechanicalState, Rig};
@@ -94,28 +92,5 @@ impl Plant<'_> {
         };
         let stroke_m = self.model.constants().cylinder.stroke_m;
         root::rising(excess_rad, 0.0, stroke_m, 1e-7)
-    }
-}
-
-/// The signals that are constant over a run.
-pub(crate) fn signals_of_run(rig: Rig, oil_temperature_c: f64) -> Signals {
-    let run = Signals {
-        oil_temperature_c,
-        viscosity_m2_s: oil::viscosity_m2_s(oil_temperature_c),
-        ..Signals::default()
-    };
-    match rig {
-        Rig::Hitch(rig) => Signals {
-            load_kg: rig.load_kg,
-            ..run
-        },
-        Rig::Flow { .. } => Signals {
-            travel_m: f64::NAN,
-            speed_m_s: f64::NAN,
-            rocker_angle_rad: f64::NAN,
-            load_kg: f64::NAN,
-            weight_n: f64::NAN,
-            ..run
-        },
     }
 }

@@ -1,0 +1,105 @@
+//! The residuals of an estimate, and columns of their changes.
+
+use rayon::prelude::*;
+
+use crate::data::problem::Problem;
+use crate::estimate::Estimate;
+use crate::residuals::whitening::Weights;
+
+/// Threshold of Huber's loss, in sigmas: beyond it the loss grows linearly instead of quadratically.
+const HUBER_THRESHOLD: f64 = 10.0;
+
+/// Whitened residuals of every run under an estimate.
+#[must_use]
+pub fn residuals(problem: Problem<'_>, weights: &Weights, estimate: &Estimate) -> Vec<Vec<f64>> {
+    let Problem {
+        experiment, model, ..
+    } = problem;
+    let model = estimate.applied_to(model);
+    (0..experiment.runs.len())
+        .into_par_iter()
+        .map(|index| {
+            let run = &experiment.runs[index];
+            let trace = run.simulate(&model, estimate.nuisances[index], &estimate.clocks);
+            weights.runs[index].whiten(run, &trace)
+        })
+        .collect()
+}
+
+/// Residuals transformed such that their squares are Huber losses.
+///
+/// While an effect is missing, a simulation may run against a stop that the real hitch never reached. A thousand sigmas
+/// of dead-head pressure would then dominate the cost. Residuals below `HUBER_THRESHOLD` are unchanged.
+#[must_use]
+pub fn huber(mut residuals: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    for residual in residuals.iter_mut().flatten() {
+        let size = residual.abs();
+        if size > HUBER_THRESHOLD {
+            *residual = (2.0 * HUBER_THRESHOLD * size - HUBER_THRESHOLD * HUBER_THRESHOLD)
+                .sqrt()
+                .copysign(*residual);
+        }
+    }
+    residuals
+}
+
+/// [`residuals`] transformed by [`huber`].
+#[must_use]
+pub fn huber_residuals(
+    problem: Problem<'_>,
+    weights: &Weights,
+    estimate: &Estimate,
+) -> Vec<Vec<f64>> {
+    huber(residuals(problem, weights, estimate))
+}
+
+/// Sum of squares of residuals.
+#[must_use]
+pub fn square_sum(residuals: &[Vec<f64>]) -> f64 {
+    residuals.iter().map(|run| dot(run, run)).sum()
+}
+
+/// Dot product, with eight partial sums: floating-point addition is not associative, so a single sum could not be
+/// vectorised.
+#[must_use]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a_parts, a_rest) = a.as_chunks::<8>();
+    let (b_parts, b_rest) = b.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (a, b) in a_parts.iter().zip(b_parts) {
+        for lane in 0..8 {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
+/// Residuals `a` minus `b`, run by run.
+#[must_use]
+pub fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let runs = a.iter().zip(b);
+    runs.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect())
+        .collect()
+}
+
+/// Subtracts `share` times `part` from `column`.
+pub fn subtract(column: &mut [f64], share: f64, part: &[f64]) {
+    for (value, part) in column.iter_mut().zip(part) {
+        *value -= share * part;
+    }
+}
+
+/// Change of the simulation per step of one scale: the residual decreases where the simulation increases.
+pub(super) fn quotient(base: &[Vec<f64>], moved: Vec<Vec<f64>>, step: f64) -> Vec<Vec<f64>> {
+    moved
+        .into_iter()
+        .zip(base)
+        .map(|(mut moved, base)| {
+            for (m, b) in moved.iter_mut().zip(base) {
+                *m = (b - *m) / step;
+            }
+            moved
+        })
+        .collect()
+}
