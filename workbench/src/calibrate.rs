@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use hitch_controller::Controller;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
-use hitch_plant::{AddedEffect, Constants, Dynamics, Model, OrificeValve, Solenoid, Valve};
+use hitch_plant::{Constants, Dynamics, Model, OrificeValve, Solenoid, Valve};
 use hitch_quantities::calibration::design_parameters::CurrentParameters;
 use hitch_quantities::calibration::linkage::{LINKAGE_POINTS, LinkageTable};
 use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
@@ -15,9 +15,11 @@ use hitch_quantities::units::{
 use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
 use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, largest_current_a, survey};
+use effect_size::found;
 
 pub mod carried;
 mod dynamics;
+mod effect_size;
 mod holding;
 
 /// Tolerance of a valve table relative to the surveyed curve, A.
@@ -173,19 +175,6 @@ fn current_regulation(solenoid: &Solenoid, current: &mut CurrentParameters) {
     current.integral = scaled(default.integral, resistance);
     let settling_ms = f64::from(default.settling_time.0) * (inductance / resistance).max(1.0);
     current.settling_time = Millisecond(settling_ms.ceil() as i32).min(LONGEST_SETTLING);
-}
-
-/// First parameter of an effect of the model, in any form.
-fn found(model: &Model, id: &str) -> Option<f64> {
-    let added = model.effects.iter().find(|added| added.effect.id() == id)?;
-    added.values.first().copied()
-}
-
-/// First parameter of an effect of the model in one form.
-fn found_in(model: &Model, id: &str, form: Option<&str>) -> Option<f64> {
-    let is_it = |added: &&AddedEffect| (added.effect.id(), added.effect.form()) == (id, form);
-    let added = model.effects.iter().find(is_it)?;
-    added.values.first().copied()
 }
 
 /// A controller for `model`, in the state after power-up.
@@ -347,6 +336,8 @@ fn thinned(curve: &[CurvePoint], tolerance_a: f64, gap_lpm: f64) -> Vec<CurvePoi
 
 #[cfg(test)]
 mod tests {
+    use hitch_plant::AddedEffect;
+
     use super::*;
 
     /// A curve in steps of 1 mA with a kink every 7 mA and a flat start: its kinks are closer than table points may be.

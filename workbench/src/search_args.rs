@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use hitch_identification::data::limit::Limit;
-use hitch_identification::search::subset::Options;
+use hitch_identification::search::options::Options;
 
 use crate::interruption::requested;
 

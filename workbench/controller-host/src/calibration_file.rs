@@ -27,7 +27,7 @@ use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_input::toml_reader::TomlTable;
 use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
-use hitch_quantities::calibration::parameter::{ParameterGroup, ParameterInfo};
+use hitch_quantities::calibration::parameter::ParameterGroup;
 use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
 use hitch_quantities::units::{MicroLitrePerSecond, Micrometre, MilliAmp, MilliDegree};
 use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
@@ -66,8 +66,13 @@ macro_rules! with_groups {
 }
 
 // Defined below the macro that it uses.
+mod key;
+mod objection;
 mod scalars;
 mod setting;
+use key::is_exact;
+pub use key::key;
+use objection::objection;
 use scalars::write_scalars;
 pub use setting::{Scalar, scalar, set, with_settings};
 
@@ -149,17 +154,6 @@ fn written(calibration: &Calibration, before: Option<&Calibration>) -> String {
     );
     write_scalars(calibration, before, &mut text);
     text
-}
-
-/// Checks the value of a scalar: counts are integers, physical quantities are rounded.
-fn is_exact(info: &ParameterInfo, value: f64) -> bool {
-    info.suffix != "count" || value.fract() == 0.0
-}
-
-/// Key of a scalar in a file: its name with the engineering unit as suffix.
-#[must_use]
-pub fn key(info: &ParameterInfo) -> String {
-    format!("{}_{}", info.name, info.suffix)
 }
 
 #[allow(
@@ -293,58 +287,6 @@ fn read_linkage(file: &TomlTable<'_>, calibration: &mut Calibration) -> Result<(
 fn refused(file: &TomlTable<'_>, error: CalibrationError) -> InputError {
     let (section, what, mend) = objection(error);
     file.error_at(section, what, mend)
-}
-
-/// The firmware's objection to a calibration: section, fault, and suggested correction.
-fn objection(error: CalibrationError) -> (&'static str, String, &'static str) {
-    use CalibrationError as E;
-    match error {
-        E::ValvePoint { valve, index } => (
-            valve,
-            format!("point {} of [{valve}] is out of order", index + 1),
-            "start at zero flow; currents and flows have to rise strictly",
-        ),
-        E::ValveGap { valve, index } => (
-            valve,
-            format!(
-                "point {} of [{valve}] is too close to the previous one",
-                index + 1
-            ),
-            "flows have to differ by at least 0.25 % of the largest one, and by 0.0003 l/min",
-        ),
-        E::ValveSize { valve } => (
-            valve,
-            format!("[{valve}] has no points"),
-            "give at least two",
-        ),
-        E::Linkage { index } => (
-            "linkage",
-            format!("travel {} of [linkage] does not rise", index + 1),
-            "the travel has to rise strictly with the angle",
-        ),
-        E::Crossed { group, low, high } => (
-            group,
-            format!("{low} of [{group}] is not below {high}"),
-            "exchange them",
-        ),
-        E::AngleLag { found, most } => (
-            "sensors",
-            format!(
-                "angle_lag_ms of [sensors] is {}, and at most {} with the onset speeds of [safety]: a frozen angle would \
-                 cost too much travel",
-                found.0, most.0
-            ),
-            "use a faster sensor or filter, or lower lift_onset_speed and lower_onset_speed of [safety]",
-        ),
-        E::Parameter { group, what } => (
-            group,
-            format!("{} of [{group}] is out of range", key(what.parameter)),
-            "see the reasons in a file written by `hitch calibrate`",
-        ),
-        E::Version { .. } | E::Checksum { .. } => {
-            ("format", "the block is damaged".to_owned(), "write it anew")
-        }
-    }
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ use hitch_quantities::Calibration;
 use hitch_quantities::calibration::valve_table::ValveTable;
 use hitch_quantities::units::{MicrometrePerSecond, MillimetrePerSecondSquared, Millisecond};
 
-use super::found_in;
+use super::effect_size::found_in;
 
 /// Share of air in the oil up to which the defaults meet the limits of motion.
 const USUAL_AIR: f64 = 0.02;

@@ -10,7 +10,7 @@ use hitch_plant::{Currents, HitchRig, Model, Plant, Rig};
 use hitch_quantities::Calibration;
 use hitch_quantities::units::Millisecond;
 
-use super::found;
+use super::effect_size::found;
 
 /// Factor `m`. Oil of 50 C instead of 40 C leaks as much more.
 const MARGIN: f64 = 1.5;

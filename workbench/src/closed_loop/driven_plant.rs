@@ -4,7 +4,9 @@ use hitch_plant::{Currents, HitchRig, Model, Plant, Reading, Rig, Solenoid};
 
 use super::coil::Coil;
 use super::instruments::SUPPLY_V;
-use super::loop_::STEP_S;
+
+/// The controller's step, s.
+pub const STEP_S: f64 = 1e-3;
 
 /// The two coils of a hitch.
 #[derive(Debug, Clone, Copy)]

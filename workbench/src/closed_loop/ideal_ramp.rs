@@ -8,8 +8,8 @@
 
 use hitch_plant::{Currents, HitchRig, Model, Plant, Rig};
 
-use super::loop_::STEP_S;
-use super::metrics::{ARRIVED_DEG, swing_bar};
+use super::arrival::{ARRIVED_DEG, swing_bar};
+use super::driven_plant::STEP_S;
 use super::scenario::Move;
 use crate::valve_survey::ValveEnds;
 

@@ -5,11 +5,8 @@ use hitch_plant::{Currents, Model};
 use hitch_quantities::units::Duty;
 use hitch_quantities::{Inputs, Outputs, ValidCalibration};
 
-use super::driven_plant::DrivenPlant;
+use super::driven_plant::{DrivenPlant, STEP_S};
 use super::instruments::Instruments;
-
-/// The controller's step, s.
-pub const STEP_S: f64 = 1e-3;
 
 /// True state and signals of one millisecond.
 #[derive(Debug, Clone, Copy)]

@@ -3,12 +3,11 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::arrival::{ARRIVED_DEG, swing_bar};
+use super::driven_plant::STEP_S;
 use super::ideal_ramp::IdealRamp;
-use super::loop_::{STEP_S, Sample};
+use super::loop_::Sample;
 use super::scenario::Move;
-
-/// A move has arrived when the angle stays within this distance of the set point, degree.
-pub const ARRIVED_DEG: f64 = 0.5;
 
 /// Figures of one move.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
@@ -144,14 +143,6 @@ fn tracking_error_deg(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> f6
     let both = wanted_deg.zip(driven_deg).take(steps);
     let sum: f64 = both.map(|(wanted, driven)| (wanted - driven).powi(2)).sum();
     (sum / steps as f64).sqrt()
-}
-
-/// Peak to peak, bar.
-pub fn swing_bar(pressures_bar: impl Iterator<Item = f64>) -> f64 {
-    let (low, high) = pressures_bar.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), bar| {
-        (low.min(bar), high.max(bar))
-    });
-    high - low
 }
 
 fn is_on(sample: &Sample) -> bool {

@@ -2,7 +2,8 @@
 
 use hitch_quantities::Fault;
 
-use super::metrics::{ARRIVED_DEG, MoveResult};
+use super::arrival::ARRIVED_DEG;
+use super::metrics::MoveResult;
 use super::moves::{LoopRun, MoveTrace};
 use super::show::name;
 

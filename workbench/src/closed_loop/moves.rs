@@ -4,8 +4,9 @@ use hitch_plant::Model;
 use hitch_quantities::{Fault, Inputs, ValidCalibration};
 use rayon::prelude::*;
 
+use super::driven_plant::STEP_S;
 use super::ideal_ramp::IdealRamp;
-use super::loop_::{ClosedLoop, STEP_S, Sample};
+use super::loop_::{ClosedLoop, Sample};
 use super::metrics::{MoveResult, Summary, judge};
 use super::scenario::{Move, both_ways, middle_and_room_deg};
 use crate::valve_survey::ValveEnds;

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::loop_::{ClosedLoop, STEP_S};
+use super::driven_plant::STEP_S;
+use super::loop_::ClosedLoop;
 use super::scenario::middle_and_room_deg;
 
 /// Requested speeds as shares of the fastest one of the calibration.

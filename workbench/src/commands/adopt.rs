@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use hitch_identification::search::subset::{Accuracy, Options};
+use hitch_identification::search::options::{Accuracy, Options};
 
 use crate::error::Error;
 use crate::explanation::{Base, Found, Posed, saving};

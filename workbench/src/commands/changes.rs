@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
-use hitch_identification::search::subset::Options;
+use hitch_identification::search::options::Options;
 use hitch_plant::Model;
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
-use hitch_identification::search::subset::Options;
+use hitch_identification::search::options::Options;
 use hitch_plant::Model;
 
 use crate::closed_loop::Scenario;

@@ -1,7 +1,7 @@
 //! Groupings of the samples of a campaign.
 
 use hitch_campaign::Bench;
-use hitch_identification::data::experiment::ReadyRun;
+use hitch_identification::data::ready_run::ReadyRun;
 use hitch_identification::data::regime::Regime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! The stretch of time in which a channel has its largest error: of all samples, and of each part of the data.
 
-use hitch_identification::data::experiment::ReadyRun;
+use hitch_identification::data::ready_run::ReadyRun;
 use hitch_plant::Channel;
 use schemars::JsonSchema;
 use serde::Serialize;

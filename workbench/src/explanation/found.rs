@@ -6,7 +6,7 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
-use hitch_identification::search::subset::Options;
+use hitch_identification::search::options::Options;
 use hitch_identification::suggestion::{Suggestion, suggest};
 use hitch_plant::{AddedEffect, Effect, Model, full_name, is_same};
 

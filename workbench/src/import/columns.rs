@@ -3,6 +3,7 @@
 use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, is_absolute, run_columns};
 
 use super::doubts::{is_percentage, is_position, not_usable, says_degrees, two_points, why_not};
+use super::mapping::{BY_USER, Mapping, Taken, Untold};
 use super::note::Note;
 use super::times::time;
 use super::words::{CHANNELS, Words};
@@ -17,8 +18,6 @@ const MOST_A: f64 = 20.0;
 const MOST_A_IN_MA: f64 = 5.0;
 /// The column of the angle.
 const ANGLE: &str = "rocker_angle_deg";
-/// Reason of a column that the user assigned.
-const BY_USER: &str = "given by --map";
 /// Larger values of a pressure are not in bar.
 const MOST_BAR: f64 = 400.0;
 
@@ -31,43 +30,6 @@ pub enum Kind {
     Channels,
     /// Signals of a bus, with units from its description.
     Signals,
-}
-
-/// A column of a run, its source, and the reason for the choice.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Taken {
-    /// The run's column.
-    pub channel: &'static str,
-    /// Name and unit, as in `[columns]`.
-    pub source: String,
-    /// Reason.
-    pub reason: String,
-    /// Whether name or unit is an assumption, which the user should check.
-    pub is_assumed: bool,
-}
-
-impl Taken {
-    fn is_proposed(&self) -> bool {
-        self.reason != BY_USER
-    }
-}
-
-/// Assignment for a log.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Mapping {
-    /// In the order of a run's columns.
-    pub taken: Vec<Taken>,
-    /// What was assumed, and columns of a known quantity that were left out; one line each.
-    pub notes: Vec<Note>,
-}
-
-/// A column that could not be determined.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Untold {
-    /// Description.
-    pub what: String,
-    /// Suggested correction.
-    pub mend: String,
 }
 
 /// A candidate column with its score.

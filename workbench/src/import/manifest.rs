@@ -6,8 +6,8 @@ use hitch_campaign::{Bench, Campaign};
 use hitch_model_file::quoted;
 use hitch_plant::Linkage;
 
-use super::columns::Mapping;
 use super::cuts::cuts;
+use super::mapping::Mapping;
 use crate::error::Error;
 use crate::run_block::RunBlock;
 

@@ -8,13 +8,15 @@ mod doubts;
 pub mod files;
 pub mod load;
 pub mod manifest;
+mod mapping;
 pub mod note;
 #[cfg(test)]
 mod tests;
 pub mod times;
 pub mod words;
 
-pub use columns::{Kind, Mapping, Taken, Untold};
+pub use columns::Kind;
 pub use files::{Columns, Files};
 pub use load::load_in_name;
+pub use mapping::{Mapping, Taken, Untold};
 pub use note::Note;

@@ -1,6 +1,6 @@
 //! The samples of a long run as a screen shows them: the minimum and the maximum of each column of pixels.
 
-use super::runs::{ChannelView, RunView, Simulated};
+use super::run_view::{ChannelView, RunView, Simulated};
 
 /// A run with at most two samples in each of `columns` columns of equal numbers of samples; an unchanged one if it is shorter.
 ///

@@ -17,6 +17,7 @@ pub mod page;
 mod plotted;
 pub mod rebuild_page;
 mod rest_figure;
+pub mod run_view;
 pub mod run_views;
 pub mod runs;
 mod same_move;

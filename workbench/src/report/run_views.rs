@@ -1,11 +1,11 @@
 //! Converts evaluated models into the runs of a report.
 
 use hitch_campaign::Bench;
-use hitch_identification::data::experiment::ReadyRun;
+use hitch_identification::data::ready_run::ReadyRun;
 use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Model};
 
-use super::runs::{ChannelView, RunView, Simulated};
+use super::run_view::{ChannelView, RunView, Simulated};
 use crate::comparison::Evaluated;
 
 /// A model, and its evaluation.

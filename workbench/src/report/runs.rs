@@ -1,6 +1,5 @@
 //! Measured and simulated channels, run by run.
 
-use hitch_plant::Channel;
 use maud::{Markup, html};
 use serde_json::{Value, json};
 
@@ -8,6 +7,7 @@ use super::chart::{Chart, Line, Stroke, legend};
 use super::columns::{TIME_S, column, plotted_column};
 use super::envelope::envelope;
 use super::plotted::plotted;
+use super::run_view::{ChannelView, RunView};
 
 /// Number of runs that are initially unfolded.
 const OPEN_RUNS: usize = 2;
@@ -23,51 +23,6 @@ const OF_NOISE: f64 = 0.2;
 const RESIDUAL: f64 = 0.1;
 /// Resolution of currents, A.
 const CURRENT_A: f64 = 1e-3;
-
-/// One run as the report draws it.
-#[derive(Debug, Clone)]
-pub struct RunView {
-    /// Index in the campaign.
-    pub index: usize,
-    /// File of the log.
-    pub file: String,
-    /// Load or port pressure, and oil temperature, as text.
-    pub conditions: String,
-    /// Time stamps, s.
-    pub time_s: Vec<f64>,
-    /// Current of the lift valve, A.
-    pub lift_current_a: Vec<f64>,
-    /// Current of the lowering valve, A.
-    pub lower_current_a: Vec<f64>,
-    /// The measured channels.
-    pub channels: Vec<ChannelView>,
-}
-
-/// A simulated channel.
-#[derive(Debug, Clone)]
-pub struct Simulated {
-    /// Samples, in the channel's unit.
-    pub samples: Vec<f64>,
-    /// Residuals, sigma; NaN where not compared.
-    pub residuals: Vec<f64>,
-    /// Error, sigma.
-    pub error: f64,
-}
-
-/// One channel of a run.
-#[derive(Debug, Clone)]
-pub struct ChannelView {
-    /// The channel.
-    pub channel: Channel,
-    /// One sigma of the instrument, in the channel's unit.
-    pub noise: f64,
-    /// Measured, in the channel's unit.
-    pub measured: Vec<f64>,
-    /// Simulated by the initial model.
-    pub before: Simulated,
-    /// Simulated by the final model, if it differs.
-    pub after: Option<Simulated>,
-}
 
 /// All runs, in descending order of error; the first ones unfolded.
 pub fn runs(views: &[RunView]) -> Markup {
@@ -204,10 +159,12 @@ fn figure(view: &RunView, channel: &ChannelView) -> Markup {
 
 #[cfg(test)]
 mod tests {
+    use hitch_plant::Channel;
     use rand::{Rng, SeedableRng};
     use rand_pcg::Pcg64;
 
     use super::*;
+    use crate::report::run_view::Simulated;
 
     /// A run of 30 s at 50 Hz with four channels, noise, and simulations of two models.
     fn long_run(random: &mut Pcg64, index: usize) -> RunView {

@@ -13,7 +13,8 @@ use hitch_plant::Model;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::routes::{Answer, Known, Of, Refusal, blocking, find, lock};
+use super::refusal::Refusal;
+use super::request::{Answer, Known, Of, blocking, find, lock};
 use super::sessions::{Sessions, Shared};
 use crate::data_sheet::{self, QUESTIONS};
 use crate::error::Error;

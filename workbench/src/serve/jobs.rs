@@ -8,7 +8,8 @@ use hitch_identification::data::limit::Limit;
 use serde_json::{Value, json};
 use tokio::sync::broadcast;
 
-use super::routes::{Refusal, lock};
+use super::refusal::Refusal;
+use super::request::lock;
 use super::session::Job;
 use super::sessions::Shared;
 use super::tasks::{Outcome, Ready, Task};

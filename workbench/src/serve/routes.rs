@@ -1,6 +1,6 @@
 //! HTTP routes of the page.
 
-use std::sync::{Arc, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
@@ -9,7 +9,6 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_identification::estimate::Estimate;
-use hitch_plant::Channel;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio_stream::wrappers::BroadcastStream;
@@ -17,18 +16,15 @@ use tokio_stream::{Stream, StreamExt};
 
 use super::own_term::TermForm;
 use super::parameters::moved;
-use super::session::{Session, Step};
-use super::sessions::{Sessions, Shared};
+use super::session::Step;
+use super::sessions::Sessions;
 use super::source::Subject;
 use super::tasks::Task;
-use super::{assets, first, jobs, live, own_term, saving, second, upload, views};
-use crate::comparison::{Grouping, worst_in_part};
+use super::{assets, first, jobs, live, own_term, saving, second_routes, upload, views};
+use crate::comparison::worst_in_part;
 use crate::error::Error;
-
-/// The sessions of all tabs.
-pub(super) type Known = State<Arc<Sessions>>;
-/// A view, or the refusal of a request.
-pub(super) type Answer = Result<Json<Value>, Refusal>;
+use crate::serve::refusal::Refusal;
+use crate::serve::request::{Answer, Known, Of, OfCell, blocking, find, lock};
 
 /// All routes, protected by the token.
 pub fn routes() -> Router<Arc<Sessions>> {
@@ -51,59 +47,8 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .merge(first::routes())
         .merge(live::routes())
         .merge(saving::routes())
-        .merge(second::routes())
+        .merge(second_routes::routes())
         .merge(upload::routes())
-}
-
-/// Refusal of a request, with the fault that the page shows.
-pub(super) struct Refusal {
-    status: StatusCode,
-    fault: Value,
-}
-
-impl Refusal {
-    /// A request for something that does not exist.
-    pub(super) fn of(status: StatusCode, what: &str) -> Self {
-        Self {
-            status,
-            fault: json!({ "what": what }),
-        }
-    }
-
-    /// A request with invalid content.
-    pub(super) fn wrong(fault: Value) -> Self {
-        Self {
-            status: StatusCode::UNPROCESSABLE_ENTITY,
-            fault,
-        }
-    }
-
-    /// A request that conflicts with the state of the session.
-    pub(super) fn conflict(what: &str) -> Self {
-        Self::of(StatusCode::CONFLICT, what)
-    }
-}
-
-impl From<Error> for Refusal {
-    fn from(error: Error) -> Self {
-        Self {
-            status: StatusCode::UNPROCESSABLE_ENTITY,
-            fault: views::fault(&error),
-        }
-    }
-}
-
-impl IntoResponse for Refusal {
-    fn into_response(self) -> Response {
-        (self.status, Json(json!({ "fault": self.fault }))).into_response()
-    }
-}
-
-/// The session of a request.
-#[derive(Debug, Deserialize)]
-pub(super) struct Of {
-    /// Its id.
-    pub(super) session: String,
 }
 
 async fn page() -> Response {
@@ -146,31 +91,6 @@ async fn run(State(sessions): Known, Query(of): Query<OfRun>) -> Answer {
     });
     let no_run = || Refusal::of(StatusCode::NOT_FOUND, "the run is not in the campaign");
     Ok(Json(view.await?.ok_or_else(no_run)?))
-}
-
-/// A cell of an error map.
-#[derive(Debug, Deserialize)]
-pub struct OfCell {
-    /// The session.
-    pub session: String,
-    /// Grouping of the map's rows.
-    pub by: Grouping,
-    /// Row.
-    pub part: String,
-    channel: String,
-}
-
-impl OfCell {
-    /// The channel of its column; `None` if there is no such channel.
-    pub fn channel(&self) -> Option<Channel> {
-        let mut channels = Channel::ALL.into_iter();
-        channels.find(|channel| channel.key() == self.channel)
-    }
-
-    /// The refusal of a cell without data.
-    pub fn no_data() -> Refusal {
-        Refusal::of(StatusCode::NOT_FOUND, "this cell has no data")
-    }
 }
 
 async fn worst(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
@@ -321,26 +241,4 @@ async fn events(
     let known = messages.filter_map(Result::ok);
     let events = known.map(|message| Event::default().json_data(message));
     Ok(Sse::new(events).keep_alive(KeepAlive::default()))
-}
-
-/// The session of a tab.
-pub(super) fn find(sessions: &Sessions, id: &str) -> Result<Shared, Refusal> {
-    let unknown = || Refusal::of(StatusCode::GONE, "the session has expired; reload the page");
-    sessions.get(id).ok_or_else(unknown)
-}
-
-/// A session to look at or to change; a computation that failed leaves it as it was.
-pub(super) fn lock(session: &Shared) -> MutexGuard<'_, Session> {
-    session.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Computes off the threads that answer requests.
-pub(super) async fn blocking<T: Send + 'static>(
-    work: impl FnOnce() -> T + Send + 'static,
-) -> Result<T, Refusal> {
-    let failed = |_| {
-        let what = "the computation failed; undo the last step, or reload the page";
-        Refusal::of(StatusCode::INTERNAL_SERVER_ERROR, what)
-    };
-    tokio::task::spawn_blocking(work).await.map_err(failed)
 }

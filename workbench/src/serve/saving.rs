@@ -9,7 +9,8 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use hitch_controller_host::calibration_file;
 
-use super::routes::{Known, Of, Refusal, blocking, find, lock};
+use super::refusal::Refusal;
+use super::request::{Known, Of, blocking, find, lock};
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
 use super::tuned::calibration;

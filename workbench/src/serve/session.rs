@@ -12,7 +12,7 @@ use hitch_plant::{Effect, Model, full_name};
 use serde_json::Value;
 use tokio::sync::broadcast;
 
-use super::live::TabLoop;
+use super::live::{Models, TabLoop};
 use super::second::Second;
 use super::source::Subject;
 use super::tuned::TunedFor;
@@ -124,6 +124,11 @@ pub struct Session {
 }
 
 impl Session {
+    /// The models of the closed loop.
+    pub fn models(&self) -> Models {
+        Models::new(self.subject().model.clone(), self.rebuilt())
+    }
+
     /// The session of a tab that was just opened.
     pub fn new(subject: Arc<Subject>) -> Self {
         Self {

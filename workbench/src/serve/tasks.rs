@@ -14,7 +14,7 @@ use serde_json::json;
 
 use super::own_term::TermForm;
 use super::parameters::{held, moved};
-use super::routes::Refusal;
+use super::refusal::Refusal;
 use super::second::Second;
 use super::session::{Explained, Ranking, Session, Step};
 use super::source::Subject;

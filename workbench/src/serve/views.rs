@@ -5,8 +5,8 @@ mod way;
 
 use std::sync::Arc;
 
-use hitch_identification::data::experiment::ReadyRun;
 use hitch_identification::data::problem::Problem;
+use hitch_identification::data::ready_run::ReadyRun;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::evaluate_weighted;
 use hitch_plant::simulation::Trace;
@@ -16,25 +16,10 @@ use serde_json::{Value, json};
 use super::session::{Ranking, Session, Step};
 use super::source::Subject;
 use crate::comparison::{Comparison, Evaluated, Grouping};
-use crate::error::Error;
 use crate::report::run_views::conditions;
 use crate::words;
 
 pub use effects::tried;
-
-/// A fault, with file and position if a file is its cause.
-pub fn fault(error: &Error) -> Value {
-    match error {
-        Error::Input(input) => json!({
-            "file": input.file.display().to_string(),
-            "line": input.place.map(|place| place.line),
-            "column": input.place.map(|place| place.column),
-            "what": input.what,
-            "mend": input.mend,
-        }),
-        other => json!({ "what": other.to_string() }),
-    }
-}
 
 /// Campaign, model, steps and error map.
 pub fn state(session: &Session) -> Value {

@@ -3,7 +3,7 @@
 use hitch_controller_host::calibration_file::{scalar, set};
 use hitch_quantities::{Calibration, ValidCalibration};
 
-use super::Change;
+use super::change::Change;
 
 /// `group.name` of the tuned values. The fastest speed of the button is not one of them: it is chosen for safety.
 pub const KNOBS: [&str; 13] = [

@@ -4,6 +4,7 @@
 //! residual error of teaching, and they have typical hysteresis, friction, entrained air and cold-oil viscosity where
 //! the model has none: gains that are tuned without hysteresis do not suit a real valve.
 
+mod change;
 mod cost;
 pub mod figures;
 mod knobs;
@@ -14,8 +15,6 @@ use cmaes::{CMAESOptions, DVector};
 use hitch_effects::find;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::{Calibration, ValidCalibration};
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use figures::Figure;
 use knobs::{Least, tuned_by, with_values, without};
@@ -24,6 +23,7 @@ use crate::closed_loop::{
     self, Course, Move, MoveResult, Press, PressResult, PressSummary, Summary, courses, run_presses,
 };
 
+pub use change::Change;
 pub use cost::{cost, press_cost};
 pub use knobs::KNOBS;
 
@@ -85,17 +85,6 @@ impl Judged {
             [self.cost, after.cost],
         )
     }
-}
-
-/// One value that was searched.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct Change {
-    /// Group and key of the calibration file, without the unit: `group.key`.
-    pub key: String,
-    /// Value before, in the unit of the calibration file.
-    pub before: f64,
-    /// Value after, in the unit of the calibration file.
-    pub after: f64,
 }
 
 impl Trial {

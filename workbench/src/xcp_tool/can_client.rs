@@ -1,7 +1,7 @@
 //! A node on the CAN bus, through any adapter.
 
 use std::io;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use hitch_protocols::can::Frame;
 
@@ -9,11 +9,6 @@ use super::bus_address::BusAddress;
 #[cfg(target_os = "linux")]
 use super::can_interface::CanInterface;
 use super::slcan_client::SlcanClient;
-
-/// Timeout of one read, after which the deadline is checked.
-pub(super) const PATIENCE: Duration = Duration::from_millis(20);
-/// Timeout for sending a frame: an adapter that takes longer is stuck.
-pub(super) const SENDS_WITHIN: Duration = Duration::from_secs(1);
 
 /// The node.
 #[derive(Debug)]
@@ -95,12 +90,4 @@ impl Adapter {
             Self::Interface(interface) => interface.receive(deadline),
         }
     }
-}
-
-/// Whether the operation only took too long.
-pub(super) fn is_timeout(error: &io::Error) -> bool {
-    matches!(
-        error.kind(),
-        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
-    )
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use hitch_protocols::can::Frame;
 use socketcan::{CanDataFrame, CanFrame, CanSocket, EmbeddedFrame, Socket};
 
-use super::can_client::{PATIENCE, SENDS_WITHIN, is_timeout};
+use super::patience::{PATIENCE, SENDS_WITHIN, is_timeout};
 
 /// The interface.
 #[derive(Debug)]

@@ -7,23 +7,13 @@ use hitch_protocols::can::Frame;
 
 use super::bus_address::BusAddress;
 use super::can_client::Adapter;
+use crate::xcp_tool::ListenMode;
 
 /// The listener.
 #[derive(Debug)]
 pub struct CanListener {
     adapter: Adapter,
     mode: ListenMode,
-}
-
-/// Behaviour of the adapter while it listens.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ListenMode {
-    /// It does not act on the bus.
-    ListenOnly,
-    /// It acknowledges frames, as it has no other mode.
-    Acknowledging,
-    /// As the administrator has configured the interface.
-    AsConfigured,
 }
 
 impl CanListener {

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use hitch_protocols::can::{Frame, slcan};
 
-use super::can_client::{PATIENCE, SENDS_WITHIN, is_timeout};
-use super::can_listener::ListenMode;
+use super::listen_mode::ListenMode;
+use super::patience::{PATIENCE, SENDS_WITHIN, is_timeout};
 
 /// Baud rate of a serial line; adapters on USB ignore it.
 const BAUD: u32 = 115_200;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use hitch_quantities::Calibration;
 use hitch_quantities::calibration::parameter::ParameterInfo;
 
-use super::key;
+use super::key::key;
 use super::setting::visit_scalars;
 
 /// Writes all scalars; those that differ from `before` are marked as tuned. (Writing to a string cannot fail.)

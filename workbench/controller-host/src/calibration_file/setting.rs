@@ -5,7 +5,8 @@ use hitch_input::naming::offer_names;
 use hitch_quantities::calibration::parameter::{ParameterGroup, ParameterInfo};
 use hitch_quantities::{Calibration, ValidCalibration};
 
-use super::{is_exact, key, objection};
+use super::key::{is_exact, key};
+use super::objection::objection;
 
 /// A scalar in engineering units.
 #[derive(Debug, Clone, Copy, PartialEq)]

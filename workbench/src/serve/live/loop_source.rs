@@ -15,7 +15,7 @@ use super::orders::Orders;
 use crate::comparison::Evaluated;
 use crate::ecu::Runner;
 use crate::error::Error;
-use crate::serve::routes::Refusal;
+use crate::serve::refusal::Refusal;
 use crate::xcp_tool::{BusAddress, Written};
 
 /// The source of the closed loops of a server.

@@ -5,7 +5,6 @@ use hitch_quantities::ValidCalibration;
 
 use crate::closed_loop::with_dynamics;
 use crate::error::Error;
-use crate::serve::session::Session;
 use crate::serve::tuned::calibration;
 
 /// The plant, and both calibrations.
@@ -27,12 +26,9 @@ pub struct Models {
 }
 
 impl Models {
-    /// The models of a session.
-    pub fn of(session: &Session) -> Self {
-        Self {
-            initial: session.subject().model.clone(),
-            present: session.rebuilt(),
-        }
+    /// The initial and the present model.
+    pub const fn new(initial: Model, present: Model) -> Self {
+        Self { initial, present }
     }
 
     /// The calibration of the present model.

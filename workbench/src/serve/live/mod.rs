@@ -22,4 +22,5 @@ mod strip;
 mod words;
 
 pub use loop_source::{LoopSource, TabLoop};
+pub use machine::Models;
 pub use routes::routes;

@@ -12,9 +12,10 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::description::described;
-use super::machine::{Machine, Models};
+use super::machine::Machine;
 use super::orders::{LONGEST_MS, Orders};
-use crate::serve::routes::{Answer, Known, Of, Refusal, blocking, find, lock};
+use crate::serve::refusal::Refusal;
+use crate::serve::request::{Answer, Known, Of, blocking, find, lock};
 
 /// All routes of the closed loop.
 pub fn routes() -> Router<Arc<crate::serve::sessions::Sessions>> {
@@ -38,7 +39,7 @@ struct Open {
 async fn describe(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let session = find(&sessions, &wanted.session)?;
     let orders = checked(wanted.orders)?;
-    let models = Models::of(&lock(&session));
+    let models = lock(&session).models();
     let view = blocking(move || {
         let machine = models.machine()?;
         described(
@@ -58,7 +59,7 @@ async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
         let mut session = lock(&session);
         (
             Arc::clone(&session.present().evaluated),
-            Models::of(&session),
+            session.models(),
             session.tab_loop.take(),
         )
     };
@@ -86,7 +87,7 @@ async fn close(State(sessions): Known, Json(of): Json<Of>) -> Answer {
 /// Writes the calibration of the present model to the ECU on the bus.
 async fn write(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     let session = find(&sessions, &of.session)?;
-    let models = Models::of(&lock(&session));
+    let models = lock(&session).models();
     let written = blocking(move || {
         let rebuilt = models.rebuilt()?;
         sessions.loop_source.write(&rebuilt)
@@ -147,7 +148,7 @@ fn checked(orders: Orders) -> Result<Orders, Refusal> {
 /// The calibration of the present model, as a file.
 async fn calibration(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
     let session = find(&sessions, &of.session)?;
-    let models = Models::of(&lock(&session));
+    let models = lock(&session).models();
     let rebuilt = blocking(move || models.rebuilt()).await??;
     let headers = [
         (header::CONTENT_TYPE, "application/toml; charset=utf-8"),

@@ -11,8 +11,8 @@ use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::{Fit, evaluate, fit_loads, refine, short_fit};
 use hitch_identification::explanation::diagnosis::diagnose_each;
 use hitch_identification::residuals::whitening::Weights;
+use hitch_identification::search::options::{Accuracy, Options};
 use hitch_identification::search::single_effects::try_effects;
-use hitch_identification::search::subset::{Accuracy, Options};
 use hitch_identification::selection::hold_out::held_out;
 use hitch_plant::{AddedEffect, Effect, Model, full_name};
 

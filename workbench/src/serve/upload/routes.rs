@@ -20,7 +20,8 @@ use super::incoming::{Lost, receive};
 use super::limits::{LARGEST_ASSIGNMENT, LIFETIME, LONGEST, MOST_BYTES, MOST_FILES};
 use super::proposal::Proposal;
 use crate::error::Error;
-use crate::serve::routes::{Answer, Known, Of, Refusal, blocking, find, lock};
+use crate::serve::refusal::Refusal;
+use crate::serve::request::{Answer, Known, Of, blocking, find, lock};
 use crate::serve::sessions::{Sessions, Shared};
 use crate::serve::source::{Origin, Subject};
 

@@ -7,6 +7,7 @@ mod clock;
 mod heard;
 mod measured;
 mod monitor;
+mod state;
 mod trouble_codes;
 mod view;
 mod words;

@@ -10,9 +10,10 @@ use hitch_quantities::ValidCalibration;
 use serde_json::Value;
 
 use super::heard::Heard;
+use super::state::State;
 use super::view;
 use crate::error::Error;
-use crate::xcp_tool::{BusAddress, CanListener, ListenMode, Written, write_to};
+use crate::xcp_tool::{BusAddress, CanListener, Written, write_to};
 
 /// Time after which the thread checks whether it has to end.
 const TURN: Duration = Duration::from_millis(50);
@@ -49,15 +50,6 @@ struct Shared {
     /// Held by whoever has the adapter.
     adapter: Mutex<()>,
     state: Mutex<State>,
-}
-
-/// What the thread and the requests of the tabs share.
-#[derive(Debug)]
-pub struct State {
-    /// The adapter, or why it is lost.
-    pub adapter: Result<ListenMode, String>,
-    /// What was received.
-    pub heard: Heard,
 }
 
 impl BusMonitor {

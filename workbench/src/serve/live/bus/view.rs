@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::heard::{Heard, Hitch, TimedSample};
 use super::measured::Measured;
-use super::monitor::State;
+use super::state::State;
 use super::words;
 use crate::xcp_tool::{BusAddress, ListenMode};
 

@@ -1,0 +1,12 @@
+//! When a move has arrived, and how the pressure swings.
+
+/// A move has arrived when the angle stays within this distance of the set point, degree.
+pub const ARRIVED_DEG: f64 = 0.5;
+
+/// Peak to peak, bar.
+pub fn swing_bar(pressures_bar: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) = pressures_bar.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), bar| {
+        (low.min(bar), high.max(bar))
+    });
+    high - low
+}
