@@ -12,7 +12,8 @@ use rand_pcg::Pcg64;
 
 use crate::second_rig::campaign_writer::{LOAD_SIGMA, PlannedRun, log};
 use crate::second_rig::draw::{Case, Kind, Wish, draw};
-use crate::second_rig::hideable::{Fidelity, find};
+use crate::second_rig::hidden::Fidelity;
+use crate::second_rig::hideable::find;
 use crate::second_rig::instruments::CHANNEL_SIGMA;
 use crate::second_rig::manoeuvres::Plan;
 use crate::second_rig::on_order::on_order;

@@ -13,6 +13,7 @@ use hitch_workbench::ecu::{EcuMachine, MachineError};
 use super::chip::{Chip, Stop};
 use super::conditions::Conditions;
 use super::cpu::{Cpu, Register};
+use super::enable_line::{ENABLE, ENABLE_READ_BACK};
 use super::flash::Contents;
 use super::image::Image;
 use super::layout::Layout;
@@ -36,11 +37,6 @@ const SENSOR_SUPPLY: usize = Signal::SensorSupply as usize;
 
 /// Steps of the timer in half a pulse on both boards: 168 MHz, counted up and down at 16 kHz.
 const PWM_STEPS: u16 = 5_250;
-
-/// Output of the enable line.
-pub const ENABLE: Pin = Pin::new(Port::B, 10);
-/// Input that reads the enable line back at the drivers.
-pub const ENABLE_READ_BACK: Pin = Pin::new(Port::B, 11);
 
 /// A board at some time.
 #[derive(Clone, Debug)]

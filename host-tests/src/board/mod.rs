@@ -21,6 +21,7 @@ mod clocks;
 mod conditions;
 mod counters;
 mod cpu;
+mod enable_line;
 mod flash;
 mod image;
 mod layout;
@@ -33,8 +34,9 @@ mod watchdog;
 
 pub use chip::{Chip, Stop};
 pub use conditions::Conditions;
+pub use enable_line::ENABLE_READ_BACK;
 pub use flash::{Contents, Extent, Operation};
 pub use image::Image;
 pub use layout::Layout;
-pub use machine::{Board, ENABLE_READ_BACK, Snapshot};
+pub use machine::{Board, Snapshot};
 pub use part::{Part, Pin, Port};

@@ -4,7 +4,8 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
 use crate::second_rig::driven_hitch::Conditions;
-use crate::second_rig::hideable::{Fidelity, HIDEABLE, Shape};
+use crate::second_rig::hidden::{Fidelity, Shape};
+use crate::second_rig::hideable::HIDEABLE;
 use crate::second_rig::physics::{Physics, SpoolMotion, Stiction};
 
 /// Furthest that a threshold is off the data sheet, A.

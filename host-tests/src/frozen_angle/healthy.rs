@@ -8,7 +8,8 @@ use rand_pcg::Pcg64;
 
 use crate::drawn_hitches::draw::{Drawn, draw};
 use crate::drawn_hitches::session::{Instant, Session};
-use crate::second_rig::hideable::{Fidelity, HIDEABLE, Shape};
+use crate::second_rig::hidden::{Fidelity, Shape};
+use crate::second_rig::hideable::HIDEABLE;
 use crate::second_rig::linkage;
 use crate::second_rig::physics::{Ground, Stiction};
 

@@ -5,7 +5,7 @@ use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Verdict, explain_with};
-use hitch_identification::search::subset::Options;
+use hitch_identification::search::options::Options;
 use hitch_plant::{Effect, Model};
 use hitch_workbench::explanation::Since;
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{explain_with, fit_base};
-use hitch_identification::search::subset::{Accuracy, Options};
+use hitch_identification::search::options::{Accuracy, Options};
 use hitch_plant::{Constants, Model};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;

@@ -5,7 +5,8 @@
 //! variance come from the marginal likelihood over a grid.
 
 use hitch_campaign::{Bench, Campaign};
-use hitch_identification::data::experiment::{Experiment, ReadyRun};
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::ready_run::ReadyRun;
 use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Model};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};

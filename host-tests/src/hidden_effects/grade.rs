@@ -10,7 +10,7 @@ use super::detectability::detectability;
 use super::starting_point;
 use crate::second_rig::campaign_writer::campaign;
 use crate::second_rig::draw::{Case, Kind};
-use crate::second_rig::hideable::Fidelity;
+use crate::second_rig::hidden::Fidelity;
 
 /// Error up to which a model explains a campaign, sigmas.
 const EXPLAINED: f64 = 1.1;

@@ -6,7 +6,8 @@
 
 use hitch_effects::CATALOGUE;
 use hitch_identification::data::clocks::Clocks;
-use hitch_identification::data::experiment::{Experiment, Nuisance};
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::nuisance::Nuisance;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::residuals::whitening::Weights;

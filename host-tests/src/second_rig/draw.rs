@@ -4,7 +4,8 @@ use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::hideable::{Fidelity, HIDEABLE, Hideable, Shape};
+use super::hidden::{Fidelity, Hideable, Shape};
+use super::hideable::HIDEABLE;
 use super::instruments::Instruments;
 use super::manoeuvres::Plan;
 use super::outside::OUTSIDE;

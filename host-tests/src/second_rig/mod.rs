@@ -7,6 +7,7 @@
 //! ```text
 //! draw           a seed -> family, plan, hidden effects, instruments
 //! foreign        a machine that differs from the data sheet in many ways, and its changes
+//! hidden         a physics that can be hidden, and its drawn shape
 //! hideable       every physics that can be hidden, with its usual sizes; fills a `Physics`
 //! physics        deviations of a rig from its data sheet, as plain numbers manoeuvres     lab and field plans: loads,
 //! temperatures, current traces
@@ -25,6 +26,7 @@ pub mod data_sheet;
 pub mod draw;
 pub mod driven_hitch;
 pub mod foreign;
+pub mod hidden;
 pub mod hideable;
 pub mod hydraulics;
 pub mod instruments;

@@ -1,6 +1,6 @@
 //! Physics outside the catalogue: the expected verdict is "unexplained".
 
-use super::hideable::{Hideable, Shape};
+use super::hidden::{Hideable, Shape};
 use super::physics::Physics;
 
 const fn outside(

@@ -3,7 +3,8 @@
 use clap::Args;
 
 use super::draw::{Kind, Wish};
-use super::hideable::{Fidelity, Hideable, find};
+use super::hidden::{Fidelity, Hideable};
+use super::hideable::find;
 use super::manoeuvres::Plan;
 use super::test_stand::Family;
 

@@ -14,7 +14,7 @@ use hitch_identification::explanation::explain::{
     Explanation, Verdict, explain, explain_with, fit_base,
 };
 use hitch_identification::explanation::starting_point::StartingPoint;
-use hitch_identification::search::subset::{Accuracy, Options};
+use hitch_identification::search::options::{Accuracy, Options};
 use hitch_plant::Model;
 use host_tests::hidden_effects::starting_point;
 use host_tests::hidden_effects::wrong_base::declared;

@@ -10,7 +10,7 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain_with};
-use hitch_identification::search::subset::Options;
+use hitch_identification::search::options::Options;
 use hitch_plant::AddedEffect;
 use host_tests::program::run;
 use serde_json::Value;

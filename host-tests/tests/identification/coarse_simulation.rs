@@ -7,7 +7,7 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::evaluate;
-use hitch_identification::estimation::jacobian::{difference, residuals, square_sum};
+use hitch_identification::estimation::residual_columns::{difference, residuals, square_sum};
 use hitch_identification::explanation::explain::fit_base;
 use hitch_identification::residuals::whitening::Weights;
 use hitch_plant::{AddedEffect, Effect, Model};

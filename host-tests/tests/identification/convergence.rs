@@ -6,7 +6,8 @@ use std::path::Path;
 
 use hitch_campaign::{Campaign, Run};
 use hitch_effects::CATALOGUE;
-use hitch_identification::data::experiment::{Experiment, Nuisance};
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::nuisance::Nuisance;
 use hitch_plant::simulation::{Trace, simulate};
 use hitch_plant::{AddedEffect, Channel, Currents, Effect, Model};
 use host_tests::seeds::cases;

@@ -8,7 +8,7 @@ use hitch_identification::data::limit::Limit;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain::{Explanation, explain_with};
-use hitch_identification::search::subset::Options;
+use hitch_identification::search::options::Options;
 use host_tests::hidden_effects::starting_point;
 use host_tests::second_rig::campaign_writer::campaign;
 use host_tests::second_rig::draw::{Kind, Wish, draw};

@@ -8,10 +8,9 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::{Fit, evaluate, refine};
-use hitch_identification::estimation::jacobian::{
-    Jacobian, difference, dot, residuals, square_sum,
-};
+use hitch_identification::estimation::jacobian::Jacobian;
 use hitch_identification::estimation::nuisance_projection::NuisanceProjection;
+use hitch_identification::estimation::residual_columns::{difference, dot, residuals, square_sum};
 use hitch_identification::selection::evidence::{
     detectability, log_odds, shares, variance_inflation,
 };

@@ -11,7 +11,8 @@ use host_tests::hidden_effects::starting_point;
 use host_tests::hidden_effects::wrong_base::declared;
 use host_tests::second_rig::campaign_writer::campaign;
 use host_tests::second_rig::draw::{Case, Kind, Wish, draw};
-use host_tests::second_rig::hideable::{Fidelity, find};
+use host_tests::second_rig::hidden::Fidelity;
+use host_tests::second_rig::hideable::find;
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
 

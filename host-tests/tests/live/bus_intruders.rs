@@ -4,7 +4,7 @@
 //! angle is that of the plant, not what the ECU reports.
 
 use hitch_ecu::BoardScaling;
-use hitch_quantities::calibration::class::Fitted;
+use hitch_quantities::calibration::fitted::Fitted;
 use hitch_quantities::{Calibration, ValidCalibration};
 use hitch_workbench::ecu::{CutFlash, OnHost, delivered};
 use host_tests::live_ecu::{Operator, START_DEG};

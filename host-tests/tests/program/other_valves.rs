@@ -9,7 +9,7 @@ use std::time::Instant;
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::limit::Limit;
-use hitch_identification::search::subset::Options;
+use hitch_identification::search::options::Options;
 use hitch_plant::Dynamics;
 use hitch_workbench::closed_loop::{Scenario, first_missed};
 use hitch_workbench::explanation::Found;

@@ -8,13 +8,12 @@ use std::collections::BTreeSet;
 use hitch_protocols::can::Frame;
 
 use crate::board::adc::Converter;
-use crate::board::audit;
 use crate::board::can::Can;
 use crate::board::clocks::Clocks;
 use crate::board::conditions::Conditions;
 use crate::board::counters::{Counter, SlowClockCapture};
+use crate::board::enable_line::ENABLE;
 use crate::board::flash::{Contents, Effect, Flash};
-use crate::board::machine::ENABLE;
 use crate::board::part::{DBGMCU, Part, Pin, Port, TIM2};
 use crate::board::pwm::{MOE, Pwm};
 use crate::board::registers::Registers;
@@ -372,12 +371,6 @@ impl Chip {
                 self.violations.insert(what);
             }
         }
-    }
-
-    /// Faults of the initialisation by the image.
-    #[must_use]
-    pub fn audit(&self) -> Vec<String> {
-        audit::findings(self)
     }
 
     /// True while the pulse-width outputs are enabled.

@@ -5,9 +5,9 @@ use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::Trouble;
 
-use super::Setup;
 use super::first_flash::{REPORTED_MS, reports};
 use super::rig::Rig;
+use super::setup::Setup;
 
 /// Thrown off the bus by errors, the controller comes back by itself, and a trouble code reports it.
 pub fn bus_off(setup: &Setup) -> Result<String> {

@@ -5,9 +5,9 @@ use hitch_ecu::Contact;
 use hitch_protocols::j1939::Trouble;
 use hitch_workbench::ecu::Order;
 
-use super::Setup;
 use super::first_flash::{REPORTED_MS, reported, reports};
 use super::rig::{READY_MS, Rig};
+use super::setup::Setup;
 
 /// `rate.longest_travel` of the factory calibration, degree.
 const LONGEST_DEG: f64 = 30.0;

@@ -6,9 +6,9 @@ use hitch_plant::Model;
 use hitch_protocols::j1939::Trouble;
 use hitch_workbench::ecu::Order;
 
-use super::Setup;
 use super::first_flash::{reported, reports};
 use super::rig::{READY_MS, Rig};
+use super::setup::Setup;
 
 /// Supply and sensor supply that 3.3 V are on NUCLEO-G474RE, mV.
 const SUPPLY_MV: f64 = 13_200.0;

@@ -4,8 +4,8 @@ use anyhow::{Context, Result, ensure};
 use hitch_ecu::{AdcCode, Contacts};
 use hitch_workbench::ecu::Order;
 
-use super::Setup;
 use super::rig::Rig;
+use super::setup::Setup;
 use crate::board::ENABLE_READ_BACK;
 
 /// A fault of wires, sensors and coils.

@@ -5,8 +5,8 @@ use hitch_plant::Model;
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::{Id, Pgn, Trouble};
 
-use super::Setup;
 use super::rig::{READY_MS, Rig};
+use super::setup::Setup;
 use crate::board::Conditions;
 
 /// Time within which all active codes are broadcast at least once after an address is claimed, ms.

@@ -7,8 +7,8 @@ use hitch_protocols::storage::fault_history::MOST_WRITES;
 use hitch_protocols::storage::fault_log::{Entry, FaultLog, MOST_SLOTS};
 use hitch_workbench::ecu::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES};
 
-use super::Setup;
 use super::rig::Rig;
+use super::setup::Setup;
 use crate::board::{Conditions, Contents, Extent, Operation};
 
 /// Time after which the ECU has its address, ms.

@@ -11,31 +11,12 @@ mod processor;
 mod random;
 mod remote;
 mod rig;
+mod setup;
 mod start;
 mod storage;
 
-use std::path::PathBuf;
-
-use anyhow::Result;
-
 pub use rig::Rig;
-
-use super::image::Image;
-use super::layout::Layout;
-
-/// The image of a board, and the emulator's library.
-#[derive(Clone, Debug)]
-pub struct Setup {
-    /// Shared library of the CPU emulator.
-    pub library: PathBuf,
-    /// The board.
-    pub layout: Layout,
-    /// Its image.
-    pub image: Image,
-}
-
-/// A scenario; an error describes the failure.
-pub type Scenario = fn(&Setup) -> Result<String>;
+pub use setup::{Scenario, Setup};
 
 /// All of them, by name.
 pub const ALL: [(&str, Scenario); 30] = [

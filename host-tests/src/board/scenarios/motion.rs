@@ -2,8 +2,8 @@
 
 use anyhow::{Result, ensure};
 
-use super::Setup;
 use super::rig::Rig;
+use super::setup::Setup;
 
 /// Angles that the lever is moved to, degree.
 const UP_DEG: f64 = 115.0;

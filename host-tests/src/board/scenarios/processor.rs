@@ -3,8 +3,8 @@
 use anyhow::{Result, ensure};
 use hitch_plant::Model;
 
-use super::Setup;
 use super::rig::{READY_MS, Rig};
+use super::setup::Setup;
 use crate::board::{Board, Conditions, Part, Stop};
 
 /// Time within which the watchdog resets a dead program at the slowest oscillator, and the pins are low, ms.

@@ -5,9 +5,9 @@ use anyhow::{Result, ensure};
 use hitch_ecu::Contact;
 use hitch_workbench::ecu::Order;
 
-use super::Setup;
 use super::faults::{FAULTS, Fault};
 use super::rig::{READY_MS, Rig};
+use super::setup::Setup;
 
 /// Names the minutes of machine time; a release runs 60.
 const MINUTES_VARIABLE: &str = "HITCH_BOARD_MINUTES";

@@ -7,8 +7,8 @@ use hitch_protocols::j1939::hitch::StatusMessage;
 use hitch_protocols::j1939::{ExitCode, GLOBAL, HitchCommand, Id, Name, NameFields, Pgn};
 use hitch_workbench::ecu::Order;
 
-use super::Setup;
 use super::rig::Rig;
+use super::setup::Setup;
 
 /// Address of the implement.
 const SOURCE: u8 = 0x26;

@@ -6,7 +6,8 @@ use hitch_plant::Model;
 use hitch_protocols::can::Frame;
 use hitch_workbench::ecu::{Bench, Moment, Order};
 
-use super::Setup;
+use super::setup::Setup;
+use crate::board::audit::findings;
 use crate::board::{Board, Conditions, Contents};
 
 /// Time after power-up within which the ECU is ready, ms.
@@ -139,7 +140,7 @@ impl<'m> Rig<'m> {
             violations.is_empty(),
             "the image must not do this: {violations:#?}"
         );
-        let findings = self.board.chip().audit();
+        let findings = findings(self.board.chip());
         ensure!(findings.is_empty(), "the image sets this up: {findings:#?}");
         Ok(())
     }

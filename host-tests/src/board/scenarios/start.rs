@@ -2,8 +2,8 @@
 
 use anyhow::{Result, ensure};
 
-use super::Setup;
 use super::rig::{READY_MS, Rig};
+use super::setup::Setup;
 use crate::board::{Conditions, Operation, Stop};
 
 /// Frames of the address claim and the status show that the application runs.

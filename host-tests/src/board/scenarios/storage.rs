@@ -3,8 +3,8 @@
 use anyhow::{Context, Result, ensure};
 use hitch_ecu::Contact;
 
-use super::Setup;
 use super::rig::{READY_MS, Rig};
+use super::setup::Setup;
 use crate::board::{Board, Contents, Extent, Snapshot};
 use crate::ecu_tool;
 
