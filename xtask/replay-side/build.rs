@@ -9,7 +9,8 @@ use std::{env, fs};
 
 const SIGNALS: &str = "quantities/src/signals/mod.rs";
 const CONTROLLER: &str = "controller/src/controller.rs";
-const ENVELOPE: &str = "safety/src/lib.rs";
+/// The limits of the envelope have a file of their own in later commits.
+const ENVELOPE: [&str; 2] = ["safety/src/limits.rs", "safety/src/lib.rs"];
 /// Types of outputs whose variants have codes; the others have a number in a unit.
 const CODES: [&str; 4] = ["Fault", "Trip", "Reason", "Trouble"];
 
@@ -23,10 +24,16 @@ fn main() {
         })
     };
     let signals = source(SIGNALS);
+    let [own, shared] = ENVELOPE;
+    let envelope = if firmware.join(own).exists() {
+        own
+    } else {
+        shared
+    };
     let code = [
         inputs(&signals),
         outputs(&fields(&signals, "Outputs")),
-        limits(&fields(&source(ENVELOPE), "Limits")),
+        limits(&fields(&source(envelope), "Limits")),
         calibration(&source(CONTROLLER)),
     ]
     .concat();

@@ -6,7 +6,7 @@ use arm_build::toolchain::Way;
 use arm_build::{process, setup, workspace};
 
 use crate::timings::Timings;
-use crate::{ablation, documents, layers, scripts};
+use crate::{ablation, circles, documents, layers, scripts};
 
 /// Runs all checks; the first that fails ends it.
 pub fn run(way: Option<Way>, timings: &mut Timings) -> Result<()> {
@@ -15,6 +15,7 @@ pub fn run(way: Option<Way>, timings: &mut Timings) -> Result<()> {
     timings.measured("format, folders, documents, types of the scripts", || {
         cargo(&["fmt", "--all", "--check"])?;
         layers::check()?;
+        circles::check()?;
         documents::check()?;
         ablation::check()?;
         scripts::check()

@@ -3,6 +3,7 @@
 mod ablation;
 mod benchmarks;
 mod check;
+mod circles;
 mod documents;
 mod layers;
 mod mutants;

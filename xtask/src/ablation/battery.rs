@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, bail};
 use arm_build::{process, workspace};
 
-use super::SWITCH;
+/// Environment variable that names the heuristic to remove.
+pub const SWITCH: &str = "HITCH_ABLATION";
 
 /// A part of the project with its own benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,8 +7,7 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use arm_build::workspace;
 use toml::de::{DeTable, DeValue};
 
-use super::SWITCH;
-use super::battery::Battery;
+use super::battery::{Battery, SWITCH};
 
 /// The file with the list, relative to the workspace's root.
 const LIST: &str = "xtask/ablations.toml";

@@ -17,9 +17,6 @@ use arm_build::{process, workspace};
 use battery::{Battery, Outcome};
 use list::Ablation;
 
-/// Environment variable that names the heuristic to remove.
-const SWITCH: &str = "HITCH_ABLATION";
-
 /// Checks that each entry of the list still matches the source.
 pub fn check() -> Result<()> {
     let root = workspace::root();
