@@ -51,7 +51,7 @@ pub enum Command {
     Loop(loop_::Args),
     /// Run the firmware's controller on stdin/stdout, for an external plant
     Controller(controller::Args),
-    /// Export the plant or the controller as an FMI 2.0 or 3.0 co-simulation unit (FMU)
+    /// Export the plant or the controller as an FMI 2.0 co-simulation unit (FMU)
     ExportFmu(export_fmu::Args),
     /// Run the firmware image on an emulated Cortex-M4 with plant, and CAN on a TCP port
     Ecu(ecu::Args),

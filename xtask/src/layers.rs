@@ -100,7 +100,7 @@ const CRATES: [Layers; 9] = [
     Layers {
         sources: "workbench/fmu/src",
         order: &[
-            &["location", "units", "variable", "version"],
+            &["location", "units", "variable"],
             &["component"],
             &["plant", "controller"],
             &["description", "content"],
