@@ -1,26 +1,27 @@
-//! Detection rates of hidden effects: cases of the second rig, answered by `hitch explain` and by established methods.
+//! Detection rates of hidden effects: cases of the second rig, answered by `hitch explain`.
 //!
 //! ```text
 //! cargo bench -p host-tests --bench hidden_effects -- --count 40 --family steady --plan lab
 //! cargo bench -p host-tests --bench hidden_effects -- --count 40 --family steady --plan lab --foreign
 //! ```
 //!
-//! Prints a Markdown table for each family and plan, and every failure of the project's own method with the command
-//! that repeats it. The rig shares no equation with the fitted model.
+//! Prints a Markdown table for each family and plan, and every failure with the command that repeats it. The rig shares no equation with the fitted model.
 
 use clap::Parser;
 use comfy_table::{Table, presets};
-use host_tests::hidden_effects::answer::Method;
 use host_tests::hidden_effects::foreign::Adopted;
 use host_tests::hidden_effects::grade::{Graded, Posed};
+use host_tests::hidden_effects::starting_point;
 use host_tests::hidden_effects::tally::{BINS, Tally, quantile};
 use host_tests::hidden_effects::wrong_base::declared_within;
-use host_tests::hidden_effects::{methods, starting_point};
 use host_tests::second_rig::draw::{Kind, draw};
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
 use host_tests::second_rig::wish_arguments::WishArguments;
 use indicatif::{ProgressBar, ProgressStyle};
+
+/// Name of what answers, in tables.
+const NAME: &str = "hitch explain";
 
 /// How often is the hidden effect named?
 #[derive(Debug, Parser)]
@@ -54,35 +55,14 @@ struct Arguments {
     /// Errors of those constants, as a share of the tolerances of data sheets
     #[arg(long, default_value_t = 1.0, requires = "wrong_base")]
     base_error: f64,
-    /// Methods, by a part of their name
-    #[arg(long, value_delimiter = ',')]
-    methods: Vec<String>,
     /// Given by cargo
     #[arg(long, hide = true)]
     bench: bool,
 }
 
-impl Arguments {
-    fn chosen_methods(&self) -> Vec<Box<dyn Method>> {
-        let wanted = |name: &str| {
-            let name = name.to_lowercase();
-            self.methods.is_empty()
-                || self
-                    .methods
-                    .iter()
-                    .any(|part| name.contains(&part.to_lowercase()))
-        };
-        methods()
-            .into_iter()
-            .filter(|method| wanted(method.name()))
-            .collect()
-    }
-}
-
 fn main() {
     let arguments = Arguments::parse();
-    let methods = arguments.chosen_methods();
-    let groups = arguments.family.len() * arguments.plan.len() * methods.len();
+    let groups = arguments.family.len() * arguments.plan.len();
     let bar = ProgressBar::new(groups as u64 * arguments.count).with_style(
         ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {msg}")
             .expect("a sound template"),
@@ -90,61 +70,49 @@ fn main() {
     for &family in &arguments.family {
         for &plan in &arguments.plan {
             if arguments.foreign {
-                let machines = foreign_machines(&arguments, &methods, family, plan, &bar);
-                bar.suspend(|| show_foreign(&methods, &machines, family, plan));
+                let machines = foreign_machines(&arguments, family, plan, &bar);
+                bar.suspend(|| show_foreign(&machines, family, plan));
                 continue;
             }
-            let answers = answers(&arguments, &methods, family, plan, &bar);
-            bar.suspend(|| show(&arguments, &methods, &answers, family, plan));
+            let answers = answers(&arguments, family, plan, &bar);
+            bar.suspend(|| show(&arguments, &answers, family, plan));
         }
     }
     bar.finish_and_clear();
 }
 
-/// Answers of every method, in the methods' order.
-fn answers(
-    arguments: &Arguments,
-    methods: &[Box<dyn Method>],
-    family: Family,
-    plan: Plan,
-    bar: &ProgressBar,
-) -> Vec<Vec<Graded>> {
-    let mut answers: Vec<Vec<Graded>> = methods.iter().map(|_| Vec::new()).collect();
-    for seed in arguments.seed..arguments.seed + arguments.count {
+fn answers(arguments: &Arguments, family: Family, plan: Plan, bar: &ProgressBar) -> Vec<Graded> {
+    let seeds = arguments.seed..arguments.seed + arguments.count;
+    let answers = seeds.map(|seed| {
         let posed = Posed::new(draw(seed, &arguments.wish.wish(family, plan)));
         let declared = match arguments.wrong_base {
             true => declared_within(family, seed, arguments.base_error),
             false => starting_point(family),
         };
-        for (method, answers) in methods.iter().zip(&mut answers) {
-            bar.set_message(format!("{family:?} {plan:?} {seed} {}", method.name()));
-            let graded = posed.ask_about(method.as_ref(), &declared);
-            bar.inc(1);
-            let verdict = if graded.good() { "good" } else { "miss" };
-            let line = format!(
-                "{family:?} {plan:?} {seed} {}: {verdict}, {:.2?} in {:.1} s",
-                method.name(),
-                graded.answer.confidences,
-                graded.seconds
-            );
-            bar.suspend(|| eprintln!("{line}"));
-            answers.push(graded);
-        }
-    }
-    answers
+        bar.set_message(format!("{family:?} {plan:?} {seed}"));
+        let graded = posed.ask_about(&declared);
+        bar.inc(1);
+        let verdict = if graded.good() { "good" } else { "miss" };
+        let line = format!(
+            "{family:?} {plan:?} {seed} {NAME}: {verdict}, {:.2?} in {:.1} s",
+            graded.answer.confidences, graded.seconds
+        );
+        bar.suspend(|| eprintln!("{line}"));
+        graded
+    });
+    answers.collect()
 }
 
-/// A foreign machine with every method's answer, in the methods' order.
+/// A foreign machine with the answer on its changes.
 struct Machine {
     adopted: Adopted,
-    answers: Vec<Graded>,
-    /// Error in a third campaign of the model that each method found, in sigmas.
-    errors: Vec<Option<f64>>,
+    graded: Graded,
+    /// Error in a third campaign of the model that was found, in sigmas.
+    error: f64,
 }
 
 fn foreign_machines(
     arguments: &Arguments,
-    methods: &[Box<dyn Method>],
     family: Family,
     plan: Plan,
     bar: &ProgressBar,
@@ -153,28 +121,27 @@ fn foreign_machines(
     let machines = seeds.map(|seed| {
         bar.set_message(format!("{family:?} {plan:?} {seed}"));
         let adopted = Adopted::new(seed, family, plan);
-        let answers: Vec<Graded> = methods
-            .iter()
-            .map(|method| adopted.ask(method.as_ref()))
-            .collect();
-        bar.inc(methods.len() as u64);
-        let errors = answers
-            .iter()
-            .map(|graded| Some(adopted.error_elsewhere(graded.answer.model.as_ref()?)));
-        let errors: Vec<Option<f64>> = errors.collect();
-        let line = told(&adopted, &answers, &errors);
-        bar.suspend(|| eprintln!("{line}"));
-        Machine {
+        let graded = adopted.ask();
+        bar.inc(1);
+        let machine = Machine {
+            error: adopted.error_elsewhere(&graded.answer.model),
             adopted,
-            answers,
-            errors,
-        }
+            graded,
+        };
+        let line = told(&machine);
+        bar.suspend(|| eprintln!("{line}"));
+        machine
     });
     machines.collect()
 }
 
-/// A machine and the answer of the first method, as text.
-fn told(adopted: &Adopted, answers: &[Graded], errors: &[Option<f64>]) -> String {
+/// A machine and the answer, as text.
+fn told(machine: &Machine) -> String {
+    let Machine {
+        adopted,
+        graded,
+        error,
+    } = machine;
     let sizes = |sizes: &[(&'static str, f64)]| {
         let sizes = sizes.iter().map(|(id, size)| format!("{id} {size:.4}"));
         sizes.collect::<Vec<_>>().join(", ")
@@ -182,11 +149,8 @@ fn told(adopted: &Adopted, answers: &[Graded], errors: &[Option<f64>]) -> String
     let added = adopted.model.effects.iter().map(|added| added.effect.id());
     let hidden = adopted.posed.case.hidden.iter();
     let changes: Vec<_> = hidden.map(|hidden| (hidden.what.id, hidden.size)).collect();
-    let stated = answers.iter().map(|graded| {
-        let confidences = graded.answer.confidences.iter();
-        let stated = confidences.map(|(id, confidence)| format!("{id} ({confidence:.2})"));
-        stated.collect::<Vec<_>>().join(", ")
-    });
+    let stated = graded.answer.confidences.iter();
+    let stated = stated.map(|(id, confidence)| format!("{id} ({confidence:.2})"));
     format!(
         "machine {}: {}\n  adopted: {} (error {:.2}, {:.1} s)\n  changed: {} (d {:.2})\n  answered: {}; in {:.1} s, \
          error elsewhere {:.2?}",
@@ -197,25 +161,32 @@ fn told(adopted: &Adopted, answers: &[Graded], errors: &[Option<f64>]) -> String
         adopted.seconds,
         sizes(&changes),
         adopted.posed.detectability,
-        stated.collect::<Vec<_>>().join(" | "),
-        answers.first().map_or(0.0, |graded| graded.seconds),
-        errors.first().copied().flatten().unwrap_or(f64::NAN),
+        stated.collect::<Vec<_>>().join(", "),
+        graded.seconds,
+        error,
     )
 }
 
-fn show_foreign(methods: &[Box<dyn Method>], machines: &[Machine], family: Family, plan: Plan) {
+fn show_foreign(machines: &[Machine], family: Family, plan: Plan) {
     println!("\n## Foreign machines, {family:?} rig, {plan:?} plan\n");
-    let mut table = Table::new();
-    table.load_preset(presets::ASCII_MARKDOWN);
-    table.set_header(std::iter::once("").chain(methods.iter().map(|method| method.name())));
-    let columns: Vec<Vec<(&str, String)>> = (0..methods.len())
-        .map(|method| foreign_column(machines, method))
-        .collect();
-    for row in 0..columns.first().map_or(0, Vec::len) {
-        let cells = columns.iter().map(|column| column[row].1.clone());
-        table.add_row(std::iter::once(columns[0][row].0.to_owned()).chain(cells));
-    }
-    println!("{table}\n");
+    let all = Tally(machines.iter().map(|machine| &machine.graded).collect());
+    let errors: Vec<f64> = machines.iter().map(|machine| machine.error).collect();
+    let rows = [
+        ("first right", all.rate(Graded::named_first).to_string()),
+        ("all right", all.rate(Graded::exact).to_string()),
+        (
+            "wrong at confidence 0.9 or more",
+            all.rate(|graded| graded.wrong_at(0.9)).to_string(),
+        ),
+        (
+            "95 % intervals that hold the truth",
+            all.coverage().to_string(),
+        ),
+        ("error in a third campaign, median", median(errors)),
+        ("time, median", seconds(&all, 0.5)),
+        ("time, 95 %", seconds(&all, 0.95)),
+    ];
+    println!("{}\n", table(["", NAME], rows));
     let adopting: Vec<f64> = machines
         .iter()
         .map(|machine| machine.adopted.error)
@@ -229,42 +200,24 @@ fn show_foreign(methods: &[Box<dyn Method>], machines: &[Machine], family: Famil
         median(adopting),
         median(seconds)
     );
-    for (index, method) in methods.iter().enumerate() {
-        let answers: Vec<Graded> = machines
-            .iter()
-            .map(|machine| machine.answers[index].clone())
-            .collect();
-        show_reliability(method.as_ref(), &answers);
-    }
+    show_reliability(&all);
 }
 
-/// Labels and cells of a method's column for foreign machines.
-fn foreign_column(machines: &[Machine], method: usize) -> Vec<(&'static str, String)> {
-    let answers = machines.iter().map(|machine| &machine.answers[method]);
-    let all = Tally(answers.collect());
-    let errors: Vec<f64> = machines
-        .iter()
-        .filter_map(|machine| machine.errors[method])
-        .collect();
-    let seconds = |share| {
-        all.seconds(share)
-            .map_or("-".to_owned(), |s| format!("{s:.1} s"))
-    };
-    vec![
-        ("first right", all.rate(Graded::named_first).to_string()),
-        ("all right", all.rate(Graded::exact).to_string()),
-        (
-            "wrong at confidence 0.9 or more",
-            all.rate(|graded| graded.wrong_at(0.9)).to_string(),
-        ),
-        (
-            "95 % intervals that hold the truth",
-            all.coverage().to_string(),
-        ),
-        ("error in a third campaign, median", median(errors)),
-        ("time, median", seconds(0.5)),
-        ("time, 95 %", seconds(0.95)),
-    ]
+/// A Markdown table of two columns.
+fn table<L: Into<String>>(header: [&str; 2], rows: impl IntoIterator<Item = (L, String)>) -> Table {
+    let mut table = Table::new();
+    table.load_preset(presets::ASCII_MARKDOWN);
+    table.set_header(header);
+    for (label, cell) in rows {
+        table.add_row([label.into(), cell]);
+    }
+    table
+}
+
+/// A quantile of the times as text.
+fn seconds(answers: &Tally<'_>, share: f64) -> String {
+    let seconds = answers.seconds(share);
+    seconds.map_or("-".to_owned(), |seconds| format!("{seconds:.1} s"))
 }
 
 /// The median as text; a dash if there is none.
@@ -273,160 +226,86 @@ fn median(values: Vec<f64>) -> String {
     middle.map_or("-".to_owned(), |middle| format!("{middle:.2}"))
 }
 
-fn show(
-    arguments: &Arguments,
-    methods: &[Box<dyn Method>],
-    answers: &[Vec<Graded>],
-    family: Family,
-    plan: Plan,
-) {
+fn show(arguments: &Arguments, answers: &[Graded], family: Family, plan: Plan) {
+    let all = Tally(answers.iter().collect());
     println!("\n## {family:?} rig, {plan:?} plan\n");
-    println!("{}\n", table(methods, answers));
-    for (method, answers) in methods.iter().zip(answers) {
-        show_reliability(method.as_ref(), answers);
-        if method.abilities().unknown {
-            show_misses(arguments, answers, family, plan);
-        }
-    }
+    println!("{}\n", table(["", NAME], rows(&all)));
+    show_reliability(&all);
+    show_misses(arguments, answers, family, plan);
 }
 
 /// Reliability of the stated probabilities.
-fn show_reliability(method: &dyn Method, answers: &[Graded]) {
-    let reliability = Tally(answers.iter().collect()).reliability();
+fn show_reliability(answers: &Tally<'_>) {
+    let reliability = answers.reliability();
     if reliability.is_empty() {
         return;
     }
-    println!(
-        "Effects that {} names, by the probability that it states:\n",
-        method.name()
-    );
-    let mut table = Table::new();
-    table.load_preset(presets::ASCII_MARKDOWN);
-    table.set_header(["stated, mean", "there"]);
-    for (stated, there) in reliability {
-        table.add_row([format!("{stated:.2}"), there.to_string()]);
-    }
-    println!("{table}\n");
+    println!("Effects that {NAME} names, by the probability that it states:\n");
+    let rows = reliability.into_iter();
+    let rows = rows.map(|(stated, there)| (format!("{stated:.2}"), there.to_string()));
+    println!("{}\n", table(["stated, mean", "there"], rows));
 }
 
-fn table(methods: &[Box<dyn Method>], answers: &[Vec<Graded>]) -> Table {
-    let mut table = Table::new();
-    table.load_preset(presets::ASCII_MARKDOWN);
-    let names = methods.iter().map(|method| method.name());
-    table.set_header(std::iter::once("").chain(names));
-    let columns: Vec<Vec<(String, String)>> = methods
-        .iter()
-        .zip(answers)
-        .map(|(method, answers)| column(method.as_ref(), &Tally(answers.iter().collect())))
-        .collect();
-    for row in 0..columns[0].len() {
-        let cells = columns.iter().map(|column| column[row].1.clone());
-        table.add_row(std::iter::once(columns[0][row].0.clone()).chain(cells));
-    }
-    table
-}
-
-/// Labels and cells of a method's column.
-fn column(method: &dyn Method, all: &Tally) -> Vec<(String, String)> {
-    let able = method.abilities();
-    let cannot = |can: bool, cell: String| if can { cell } else { "cannot".to_owned() };
-    let one = all.of(Kind::Single);
-    let two = all.of(Kind::Pair);
-    let clean = all.of(Kind::Nothing);
-    let mut rows = vec![
-        (
-            "one hidden: named first".to_owned(),
-            cannot(able.names, one.rate(Graded::named_first).to_string()),
-        ),
-        (
-            "named first: alone, and at most 1.1 sigma left".to_owned(),
-            cannot(
-                able.intervals,
-                one.filtered(Graded::named_first)
-                    .rate(Graded::explained)
-                    .to_string(),
-            ),
-        ),
-        (
-            "one hidden: in the group".to_owned(),
-            cannot(able.names, one.rate(Graded::named_in_group).to_string()),
-        ),
-        (
-            "one hidden: only wrong names".to_owned(),
-            cannot(able.names, one.rate(Graded::wrong).to_string()),
-        ),
-    ];
-    for bin in BINS {
-        rows.push((
-            format!("named first, d {} to {}", bin.0, bin.1),
-            cannot(
-                able.names,
-                one.within(bin).rate(Graded::named_first).to_string(),
-            ),
-        ));
-    }
-    rows.push((
-        "two hidden: exactly both".to_owned(),
-        cannot(able.names, two.rate(Graded::exact).to_string()),
-    ));
-    let visible = two.within((BINS[1].0, f64::INFINITY));
-    rows.push((
-        format!("exactly both, d over {}", BINS[1].0),
-        cannot(able.names, visible.rate(Graded::exact).to_string()),
-    ));
-    rows.push((
-        "nothing hidden: something named".to_owned(),
-        cannot(
-            able.names,
-            clean.rate(|g| !g.answer.named.is_empty()).to_string(),
-        ),
-    ));
-    rows.push((
-        "nothing hidden: unknown claimed".to_owned(),
-        cannot(able.unknown, clean.rate(|g| g.answer.unknown).to_string()),
-    ));
-    rows.extend(column_of_measures(method, all));
-    rows
-}
-
-/// The rest of a column.
-fn column_of_measures(method: &dyn Method, all: &Tally) -> Vec<(String, String)> {
-    let able = method.abilities();
-    let cannot = |can: bool, cell: String| if can { cell } else { "cannot".to_owned() };
-    let outside = all.of(Kind::Outside);
+/// Labels and cells of the table.
+fn rows(all: &Tally<'_>) -> Vec<(String, String)> {
+    let (one, two) = (all.of(Kind::Single), all.of(Kind::Pair));
+    let (clean, outside) = (all.of(Kind::Nothing), all.of(Kind::Outside));
+    let over = (BINS[1].0, f64::INFINITY);
     let held_out = all
         .filtered(|g| !g.posed.case.hidden.is_empty())
         .held_out()
         .map_or("-".to_owned(), |(before, after)| {
             format!("{before:.2} to {after:.2}")
         });
-    let seconds = |share| {
-        all.seconds(share)
-            .map_or("-".to_owned(), |s| format!("{s:.1} s"))
-    };
-    vec![
-        (
-            "outside the catalogue: said so".to_owned(),
-            cannot(able.unknown, outside.rate(|g| g.answer.unknown).to_string()),
+    let named_first = one.filtered(Graded::named_first);
+    let mut rows = vec![
+        row("one hidden: named first", one.rate(Graded::named_first)),
+        row(
+            "named first: alone, and at most 1.1 sigma left",
+            named_first.rate(Graded::explained),
         ),
-        (
-            "said so, d over 0.25".to_owned(),
-            cannot(
-                able.unknown,
-                outside
-                    .within((BINS[1].0, f64::INFINITY))
-                    .rate(|g| g.answer.unknown)
-                    .to_string(),
-            ),
+        row("one hidden: in the group", one.rate(Graded::named_in_group)),
+        row("one hidden: only wrong names", one.rate(Graded::wrong)),
+    ];
+    rows.extend(BINS.map(|bin| {
+        row(
+            format!("named first, d {} to {}", bin.0, bin.1),
+            one.within(bin).rate(Graded::named_first),
+        )
+    }));
+    rows.extend([
+        row("two hidden: exactly both", two.rate(Graded::exact)),
+        row(
+            format!("exactly both, d over {}", over.0),
+            two.within(over).rate(Graded::exact),
         ),
-        (
-            "95 % intervals that hold the truth".to_owned(),
-            cannot(able.intervals, all.coverage().to_string()),
+        row(
+            "nothing hidden: something named",
+            clean.rate(|g| !g.answer.named.is_empty()),
         ),
-        ("held-out error, medians".to_owned(), held_out),
-        ("time, median".to_owned(), seconds(0.5)),
-        ("time, 95 %".to_owned(), seconds(0.95)),
-    ]
+        row(
+            "nothing hidden: unknown claimed",
+            clean.rate(|g| g.answer.unknown),
+        ),
+        row(
+            "outside the catalogue: said so",
+            outside.rate(|g| g.answer.unknown),
+        ),
+        row(
+            format!("said so, d over {}", over.0),
+            outside.within(over).rate(|g| g.answer.unknown),
+        ),
+        row("95 % intervals that hold the truth", all.coverage()),
+        row("held-out error, medians", held_out),
+        row("time, median", seconds(all, 0.5)),
+        row("time, 95 %", seconds(all, 0.95)),
+    ]);
+    rows
+}
+
+/// A label and its cell.
+fn row(label: impl Into<String>, cell: impl ToString) -> (String, String) {
+    (label.into(), cell.to_string())
 }
 
 fn show_misses(arguments: &Arguments, answers: &[Graded], family: Family, plan: Plan) {

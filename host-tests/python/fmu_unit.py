@@ -1,8 +1,7 @@
-"""A unit for co-simulation, of FMI 2.0 or FMI 3.0, with its variables by name."""
+"""A unit for co-simulation, of FMI 2.0, with its variables by name."""
 
 from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-from fmpy.fmi3 import FMU3Slave
 
 
 class Unit:
@@ -11,8 +10,7 @@ class Unit:
     def __init__(self, path, parameters={}, inputs={}, messages=None):
         self.description = read_model_description(path)
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
-        self.is_fmi3 = self.description.fmiVersion == "3.0"
-        self.slave = (FMU3Slave if self.is_fmi3 else FMU2Slave)(
+        self.slave = FMU2Slave(
             guid=self.description.guid,
             unzipDirectory=extract(path),
             modelIdentifier=self.description.coSimulation.modelIdentifier,
@@ -24,18 +22,14 @@ class Unit:
     def begin(self, parameters, inputs, stop_s=None):
         """Initialises it."""
         self.set(**parameters)
-        if self.is_fmi3:
-            self.slave.enterInitializationMode(startTime=0.0, stopTime=stop_s)
-        else:
-            self.slave.setupExperiment(startTime=0.0, stopTime=stop_s)
-            self.slave.enterInitializationMode()
+        self.slave.setupExperiment(startTime=0.0, stopTime=stop_s)
+        self.slave.enterInitializationMode()
         self.set(**inputs)
         self.slave.exitInitializationMode()
 
     def function(self, what, type):
-        """The function that gets or sets values of a type of FMI 2.0, or of the same type in FMI 3.0."""
-        name = {"Real": "Float64", "Integer": "Int32"}.get(type, type) if self.is_fmi3 else type
-        return getattr(self.slave, f"{what}{name}")
+        """The function that gets or sets values of a type."""
+        return getattr(self.slave, f"{what}{type}")
 
     def set(self, **values):
         """Sets variables by name."""
@@ -57,17 +51,13 @@ class Unit:
 
     def state(self, what, *arguments):
         """Gets, sets, frees or serializes a state."""
-        return getattr(self.slave, f"{what}FMU{'State' if self.is_fmi3 else 'state'}")(*arguments)
+        return getattr(self.slave, f"{what}FMUstate")(*arguments)
 
 
-def instantiate(slave, messages=None, **options):
+def instantiate(slave, messages=None):
     """Makes an instance; its messages go into a list, if one is given."""
-    if isinstance(slave, FMU2Slave):
-        callbacks = None
-        if messages is not None:
-            callbacks = fmi2CallbackFunctions()
-            callbacks.logger = fmi2CallbackLoggerTYPE(lambda *said: messages.append(said[-1].decode()))
-        slave.instantiate(callbacks=callbacks, **options)
-        return
-    log = None if messages is None else lambda *said: messages.append(said[-1].decode())
-    slave.instantiate(logMessage=log, **options)
+    callbacks = None
+    if messages is not None:
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(lambda *said: messages.append(said[-1].decode()))
+    slave.instantiate(callbacks=callbacks)

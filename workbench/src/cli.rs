@@ -3,8 +3,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
     add, adopt, calibrate, changes, compare, completions, controller, diagnose, ecu, effects,
-    explain, export_fmu, flash_calibration, import, loop_, main_job, man, model, paper, record,
-    schema, serve, simulate, tune,
+    explain, export_fmu, flash_calibration, import, loop_, main_job, man, model, record, schema,
+    serve, simulate, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -45,13 +45,11 @@ pub enum Command {
     Model(model::Args),
     /// Simulate the plant with the currents of a log
     Simulate(simulate::Args),
-    /// Compare the paper's tables and figures with this model
-    Paper(paper::Args),
     /// Run the firmware's controller in closed loop with the plant
     Loop(loop_::Args),
     /// Run the firmware's controller on stdin/stdout, for an external plant
     Controller(controller::Args),
-    /// Export the plant or the controller as an FMI 2.0 or 3.0 co-simulation unit (FMU)
+    /// Export the plant or the controller as an FMI 2.0 co-simulation unit (FMU)
     ExportFmu(export_fmu::Args),
     /// Run the firmware image on an emulated Cortex-M4 with plant, and CAN on a TCP port
     Ecu(ecu::Args),
@@ -90,7 +88,6 @@ impl Command {
             Self::Effects(args) => effects::run(args),
             Self::Model(args) => model::run(args),
             Self::Simulate(args) => simulate::run(args),
-            Self::Paper(args) => paper::run(args),
             Self::Loop(args) => loop_::run(args),
             Self::Controller(args) => controller::run(args),
             Self::ExportFmu(args) => export_fmu::run(args),
@@ -152,7 +149,7 @@ mod tests {
 
     #[test]
     fn wrong_usage_is_one_line() {
-        let option = fault(&["paper", "--jsn", "-"]);
+        let option = fault(&["effects", "--jsn", "-"]);
         assert_eq!(
             option,
             "unexpected argument '--jsn' found; a similar argument exists: '--json'; see --help"

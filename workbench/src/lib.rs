@@ -25,7 +25,6 @@ pub mod model_arg;
 pub mod next_command;
 pub mod output;
 pub mod outputs;
-pub mod paper;
 pub mod progress;
 pub mod rebuild;
 pub mod report;

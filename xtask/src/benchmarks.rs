@@ -3,7 +3,7 @@
 //! A result stands between two comments. The first one names it and holds its command:
 //!
 //! ```text
-//! <!-- result paper: hitch paper -->
+//! <!-- result effects: hitch effects -->
 //! ...
 //! <!-- end -->
 //! ```
@@ -152,10 +152,10 @@ mod tests {
 
     #[test]
     fn a_result_is_replaced_and_the_text_around_it_stays() {
-        let text = format!("# A\n{BEGIN}paper: hitch paper | head -1 -->\nold\n{END}\nafter\n");
+        let text = format!("# A\n{BEGIN}effects: hitch effects | head -1 -->\nold\n{END}\nafter\n");
         let found = results(&text).expect("well-formed");
         assert_eq!(found.len(), 1);
-        assert_eq!(found[0].command, "hitch paper | head -1");
+        assert_eq!(found[0].command, "hitch effects | head -1");
         let new = replaced(&text, &found[0], "new\n").expect("it has an end");
         assert_eq!(new, text.replace("old", "new"));
         assert!(results(&format!("{BEGIN}paper -->")).is_err());

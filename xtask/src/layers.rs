@@ -100,7 +100,7 @@ const CRATES: [Layers; 9] = [
     Layers {
         sources: "workbench/fmu/src",
         order: &[
-            &["location", "units", "variable", "version"],
+            &["location", "units", "variable"],
             &["component"],
             &["plant", "controller"],
             &["description", "content"],
@@ -143,7 +143,7 @@ const CRATES: [Layers; 9] = [
                 "xcp_tool",
             ],
             &["field_loop"],
-            &["ecu", "paper", "rebuild", "tuning"],
+            &["ecu", "rebuild", "tuning"],
             &["status_line", "report"],
             &["serve"],
             &["commands"],

@@ -4,43 +4,27 @@ use hitch_campaign::Campaign;
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
-use hitch_identification::explanation::explain::{Verdict, explain_with};
-use hitch_identification::search::options::Options;
+use hitch_identification::explanation::explain::{Verdict, explain};
 use hitch_plant::{Effect, Model};
 use hitch_workbench::explanation::Since;
 
-use super::answer::{Abilities, Answer, Method};
+use super::answer::Answer;
 
-/// Method of `hitch explain`.
-#[derive(Debug)]
-pub struct Explaining;
-
-impl Method for Explaining {
-    fn name(&self) -> &'static str {
-        "hitch explain"
-    }
-
-    fn abilities(&self) -> Abilities {
-        Abilities {
-            names: true,
-            unknown: true,
-            intervals: true,
-        }
-    }
-
-    fn answer(&self, campaign: &Campaign, model: &Model) -> Answer {
-        let experiment = Experiment::new(campaign, model);
-        answer(&experiment, model, Options::default())
-    }
-
-    fn answer_since(&self, baseline: &Campaign, campaign: &Campaign, model: &Model) -> Answer {
-        let since = Since::new(baseline, model.clone());
-        answer(&since.subtracted_from(campaign), model, Options::default())
-    }
+/// Its answer on a campaign, with the initial model.
+#[must_use]
+pub fn answer(campaign: &Campaign, model: &Model) -> Answer {
+    answer_of(&Experiment::new(campaign, model), model)
 }
 
-fn answer(experiment: &Experiment, model: &Model, options: Options<'_>) -> Answer {
-    let explanation = explain_with(Problem::new(experiment, model), options, &|_| {});
+/// Its answer on a campaign of a machine whose model was adopted from a baseline.
+#[must_use]
+pub fn answer_since(baseline: &Campaign, campaign: &Campaign, model: &Model) -> Answer {
+    let since = Since::new(baseline, model.clone());
+    answer_of(&since.subtracted_from(campaign), model)
+}
+
+fn answer_of(experiment: &Experiment, model: &Model) -> Answer {
+    let explanation = explain(Problem::new(experiment, model), &|_| {});
     let steps = &explanation.steps;
     let id = |effect: &dyn Effect| effect.id().to_owned();
     Answer {
@@ -62,12 +46,12 @@ fn answer(experiment: &Experiment, model: &Model, options: Options<'_>) -> Answe
             .map(|step| (id(step.effect), step.confidence))
             .collect(),
         // A model without effects has the same error on other runs as before.
-        held_out: Some(steps.first().zip(steps.last()).map_or_else(
+        held_out: steps.first().zip(steps.last()).map_or_else(
             || (explanation.before.error(), explanation.before.error()),
             |(first, last)| (first.held_out_before.error, last.held_out_after.error),
-        )),
-        error: Some(explanation.after.error()),
-        model: Some(explanation.after.estimate.applied_to(model)),
+        ),
+        error: explanation.after.error(),
+        model: explanation.after.estimate.applied_to(model),
     }
 }
 

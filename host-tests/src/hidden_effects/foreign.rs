@@ -1,5 +1,5 @@
 //! Changes of a machine that differs from its data sheet in many small ways. The model is adopted from a first
-//! campaign; the method answers for a second one.
+//! campaign; the identification answers for a second one.
 
 use std::time::Instant;
 
@@ -11,7 +11,7 @@ use hitch_plant::{Constants, Model};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-use super::answer::Method;
+use super::explaining;
 use super::grade::{Graded, Posed};
 use super::starting_point;
 use super::wrong_base::put_off;
@@ -69,12 +69,12 @@ impl Adopted {
         }
     }
 
-    /// Lets a method identify the changes.
+    /// Lets the identification find the changes.
     #[must_use]
-    pub fn ask(&self, method: &dyn Method) -> Graded {
+    pub fn ask(&self) -> Graded {
         let (first, second) = (campaign(&self.foreign.first), campaign(&self.posed.case));
         let start = Instant::now();
-        let answer = method.answer_since(&first, &second, &self.model);
+        let answer = explaining::answer_since(&first, &second, &self.model);
         Graded {
             posed: self.posed.clone(),
             answer,

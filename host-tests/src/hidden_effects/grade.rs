@@ -5,8 +5,9 @@ use std::time::Instant;
 
 use hitch_plant::Model;
 
-use super::answer::{Answer, Method};
+use super::answer::Answer;
 use super::detectability::detectability;
+use super::explaining;
 use super::starting_point;
 use crate::second_rig::campaign_writer::campaign;
 use crate::second_rig::draw::{Case, Kind};
@@ -50,18 +51,18 @@ impl Posed {
         }
     }
 
-    /// Lets a method answer.
+    /// Lets the identification answer.
     #[must_use]
-    pub fn ask(&self, method: &dyn Method) -> Graded {
-        self.ask_about(method, &starting_point(self.case.family))
+    pub fn ask(&self) -> Graded {
+        self.ask_about(&starting_point(self.case.family))
     }
 
-    /// Lets a method answer, starting from a model.
+    /// Lets the identification answer, starting from a model.
     #[must_use]
-    pub fn ask_about(&self, method: &dyn Method, model: &Model) -> Graded {
+    pub fn ask_about(&self, model: &Model) -> Graded {
         let campaign = campaign(&self.case);
         let start = Instant::now();
-        let answer = method.answer(&campaign, model);
+        let answer = explaining::answer(&campaign, model);
         Graded {
             posed: self.clone(),
             answer,
@@ -91,8 +92,7 @@ impl Graded {
     /// Whether the first name is a true one, no other was needed, and no more than noise is left.
     #[must_use]
     pub fn explained(&self) -> bool {
-        let error = self.answer.error.unwrap_or(f64::INFINITY);
-        self.named_first() && self.answer.named.len() == 1 && error <= EXPLAINED
+        self.named_first() && self.answer.named.len() == 1 && self.answer.error <= EXPLAINED
     }
 
     /// Whether every true name is among those given or said to be possible.
@@ -168,7 +168,7 @@ impl Graded {
         })
     }
 
-    /// Whether the answer is fully correct within the method's capabilities.
+    /// Whether the answer is fully correct.
     #[must_use]
     pub fn good(&self) -> bool {
         match self.posed.case.kind {

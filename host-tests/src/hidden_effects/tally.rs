@@ -60,7 +60,7 @@ impl fmt::Display for Rate {
 /// Limits of the detectability's bins.
 pub const BINS: [(f64, f64); 3] = [(0.0, 0.25), (0.25, 1.0), (1.0, f64::INFINITY)];
 
-/// One method's answers to some cases.
+/// Answers to some cases.
 #[derive(Debug, Default)]
 pub struct Tally<'a>(pub Vec<&'a Graded>);
 
@@ -104,7 +104,7 @@ impl<'a> Tally<'a> {
     /// Median held-out errors before and after.
     #[must_use]
     pub fn held_out(&self) -> Option<(f64, f64)> {
-        let errors: Vec<(f64, f64)> = self.0.iter().filter_map(|g| g.answer.held_out).collect();
+        let errors: Vec<(f64, f64)> = self.0.iter().map(|g| g.answer.held_out).collect();
         let median = |pick: fn(&(f64, f64)) -> f64| quantile(errors.iter().map(pick), 0.5);
         Some((median(|e| e.0)?, median(|e| e.1)?))
     }

@@ -7,8 +7,7 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, explain};
 use hitch_plant::Effect;
-use host_tests::hidden_effects::answer::Method;
-use host_tests::hidden_effects::explaining::Explaining;
+use host_tests::hidden_effects::explaining::answer;
 use host_tests::hidden_effects::grade::{Graded, Posed};
 use host_tests::hidden_effects::starting_point;
 use host_tests::second_rig::campaign_writer::{campaign, planned_runs, write};
@@ -41,7 +40,7 @@ fn ask(family: Family, plan: Plan, questions: &[Question]) -> Vec<Graded> {
         .iter()
         .map(|&question| {
             let posed = Posed::new(draw(question.0, &wish(family, plan, question)));
-            let graded = posed.ask(&Explaining);
+            let graded = posed.ask();
             println!(
                 "{question:?}: d {:.2}, named {:?} or {:?}, unknown {}, {:.1} s",
                 graded.posed.detectability,
@@ -123,7 +122,7 @@ fn ringing(question: Question) -> Case {
 fn an_effect_is_named_where_pressures_ring() {
     let question = (11, "entrained-air", Fidelity::Faithful, false);
     let case = ringing(question);
-    let answer = Explaining.answer(&short_moves(campaign(&case)), &starting_point(case.family));
+    let answer = answer(&short_moves(campaign(&case)), &starting_point(case.family));
     println!("{question:?}: {answer:?}");
     assert_eq!(answer.named, ["entrained-air"]);
 }
@@ -183,7 +182,7 @@ fn stiction_is_found_with_ringing_pressures() {
 fn current_noise_is_not_reported_as_stiction() {
     let case = ringing((23, "nothing", Fidelity::Faithful, true));
     let measured = few_runs(campaign(&case));
-    let answer = Explaining.answer(&measured, &starting_point(case.family));
+    let answer = answer(&measured, &starting_point(case.family));
     println!("{answer:?}");
     assert!(answer.named.is_empty() && !answer.unknown);
 }
@@ -324,7 +323,7 @@ fn two_effects_are_named_though_each_alone_looks_wrong() {
         let case = pair(Family::Dynamic, Plan::Lab, seed);
         let hidden = ids(case.hidden.iter().map(|hidden| hidden.what.id));
         let measured = few_runs(campaign(&case));
-        let answer = Explaining.answer(&measured, &starting_point(case.family));
+        let answer = answer(&measured, &starting_point(case.family));
         println!("{seed}: {hidden:?}, named {:?}", answer.named);
         assert_eq!(ids(answer.named), hidden);
     }
@@ -336,7 +335,7 @@ fn two_effects_are_named_though_each_alone_looks_wrong() {
 fn stiction_is_found_together_with_another_effect() {
     for &seed in cases(&[6058][..], &[6058, 6117]) {
         let case = pair(Family::Steady, Plan::Lab, seed);
-        let answer = Explaining.answer(&campaign(&case), &starting_point(case.family));
+        let answer = answer(&campaign(&case), &starting_point(case.family));
         let named = ids(answer.named);
         println!("{seed}: named {named:?}");
         assert!(named.iter().any(|id| id == "spool-stiction"), "{seed}");

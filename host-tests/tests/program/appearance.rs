@@ -44,14 +44,13 @@ fn texts_on_a_campaign_fit_80_columns() {
 }
 
 #[test]
-fn texts_of_the_closed_loop_and_the_paper_fit_80_columns() {
+fn texts_of_the_closed_loop_and_the_effects_fit_80_columns() {
     let dir = tempfile::tempdir().unwrap();
     for arguments in [
         "loop --scenario quick",
         "loop --scenario rate --load 150",
         "tune --scenario quick --trials 10 --out tuned.toml --force",
         "calibrate nominal --out calibration.toml",
-        "paper",
         "effects",
         "effects oil-viscosity/flow-number",
         "effects --formulas",

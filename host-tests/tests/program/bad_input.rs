@@ -235,11 +235,6 @@ fn bad_models_are_refused_by_line_and_column() {
         );
         refused(
             dir.path(),
-            &["paper", "--model", "m.toml", "--json", "-"],
-            expected,
-        );
-        refused(
-            dir.path(),
             &[
                 "simulate", "--model", "m.toml", "--inputs", "log.csv", "--out", "out.csv",
             ],

@@ -383,7 +383,7 @@ fn every_command_has_help_with_an_example() {
     };
     let all = help(&["--help"]);
     for command in [
-        "compare", "diagnose", "add", "explain", "effects", "simulate", "paper",
+        "compare", "diagnose", "add", "explain", "effects", "simulate",
     ] {
         assert!(
             all.contains(&format!("\n  {command} ")),
@@ -402,7 +402,7 @@ fn a_closed_pipe_is_no_error() {
     let mut child: std::process::Child = {
         let mut command: Command = hitch();
         command
-            .args(["paper"])
+            .args(["effects"])
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()

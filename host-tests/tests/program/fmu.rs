@@ -48,23 +48,17 @@ fn succeed(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Versions of the standard, as the command line names them.
-pub const VERSIONS: [&str; 2] = ["2", "3"];
-
-/// Exports a unit in a version of the standard.
-pub fn export(folder: &Path, version: &str, arguments: &[&str]) {
-    succeed(
-        folder,
-        &[&["export-fmu", "--fmi", version], arguments].concat(),
-    );
+/// Exports a unit.
+pub fn export(folder: &Path, arguments: &[&str]) {
+    succeed(folder, &[&["export-fmu"], arguments].concat());
 }
 
 /// A folder with the units of the dynamic plant and of the nominal controller.
-pub fn units(version: &str) -> tempfile::TempDir {
+pub fn units() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    export(folder.path(), version, &["dynamic", "--out", "plant.fmu"]);
+    export(folder.path(), &["dynamic", "--out", "plant.fmu"]);
     let controller = ["--controller", "--out", "controller.fmu"];
-    export(folder.path(), version, &controller);
+    export(folder.path(), &controller);
     folder
 }
 
@@ -113,27 +107,23 @@ fn an_importer_finds_no_fault_in_a_unit() {
     let every = with_every_effect("own <&> \"model\"");
     fs::write(&model, hitch_model_file::to_toml(&every)).unwrap();
     let model = model.to_str().unwrap();
-    for version in VERSIONS {
-        let folder = units(version);
-        export(folder.path(), version, &[model, "--out", "every.fmu"]);
-        let units = ["every.fmu", "controller.fmu", "plant.fmu"];
-        for &unit in cases(&units[..2], &units) {
-            let mut command = Command::new(python);
-            let command = command.args(["-m", "fmpy", "validate", unit]);
-            let said = said(command.current_dir(folder.path())).unwrap();
-            assert_eq!(said.trim(), "No problems found.", "{unit}, FMI {version}");
-        }
+    let folder = units();
+    export(folder.path(), &[model, "--out", "every.fmu"]);
+    let units = ["every.fmu", "controller.fmu", "plant.fmu"];
+    for &unit in cases(&units[..2], &units) {
+        let mut command = Command::new(python);
+        let command = command.args(["-m", "fmpy", "validate", unit]);
+        let said = said(command.current_dir(folder.path())).unwrap();
+        assert_eq!(said.trim(), "No problems found.", "{unit}");
     }
 }
 
 #[test]
 fn the_same_content_makes_the_same_unit() {
-    for version in VERSIONS {
-        let [one, other] = [units(version), units(version)];
-        for unit in ["plant.fmu", "controller.fmu"] {
-            let bytes = |folder: &tempfile::TempDir| fs::read(folder.path().join(unit)).unwrap();
-            assert!(bytes(&one) == bytes(&other), "{unit}, FMI {version}");
-        }
+    let [one, other] = [units(), units()];
+    for unit in ["plant.fmu", "controller.fmu"] {
+        let bytes = |folder: &tempfile::TempDir| fs::read(folder.path().join(unit)).unwrap();
+        assert!(bytes(&one) == bytes(&other), "{unit}");
     }
 }
 
@@ -172,34 +162,28 @@ fn an_imported_plant_is_the_simulated_one() {
     ];
     // By day each model and each log once.
     for (model, one) in [("dynamic", 0), ("sticky.toml", 1), ("nominal", 2)] {
-        for version in VERSIONS {
-            let unit = format!("own{version}.fmu");
-            export(folder.path(), version, &[model, "--out", &unit]);
-        }
+        export(folder.path(), &[model, "--out", "own.fmu"]);
         for &(name, options, parameters) in cases(&logs[one..=one], &logs) {
             let log = log(name);
             let simulate = ["simulate", "--model", model, "--inputs", &log];
             let simulate = [&simulate[..], &options, &["--out", "simulated.csv"]].concat();
             succeed(folder.path(), &simulate);
-            for version in VERSIONS {
-                let unit = format!("own{version}.fmu");
-                let mut arguments = vec![&unit, &log, "imported.csv", "ends"];
-                arguments.extend(parameters);
-                if options.contains(&"30") {
-                    arguments.push("oil_temperature_c=30");
-                }
-                let plant = scripts().join("fmu_plant.py");
-                script(python, folder.path(), &plant, &arguments);
-                let [simulated, imported] = ["simulated.csv", "imported.csv"].map(place);
-                let apart = match name.starts_with("flow") {
-                    // The bench has no angle.
-                    true => largest_difference_on_bench(&simulated, &imported),
-                    false => largest_difference(&simulated, &imported, 4),
-                };
-                println!("{model}, {name}, FMI {version}: {apart:.1e}");
-                // What `hitch simulate` writes is rounded to five decimals.
-                assert!(apart <= 0.6e-5, "{model}, {name}, FMI {version}: {apart}");
+            let mut arguments = vec!["own.fmu", &log, "imported.csv", "ends"];
+            arguments.extend(parameters);
+            if options.contains(&"30") {
+                arguments.push("oil_temperature_c=30");
             }
+            let plant = scripts().join("fmu_plant.py");
+            script(python, folder.path(), &plant, &arguments);
+            let [simulated, imported] = ["simulated.csv", "imported.csv"].map(place);
+            let apart = match name.starts_with("flow") {
+                // The bench has no angle.
+                true => largest_difference_on_bench(&simulated, &imported),
+                false => largest_difference(&simulated, &imported, 4),
+            };
+            println!("{model}, {name}: {apart:.1e}");
+            // What `hitch simulate` writes is rounded to five decimals.
+            assert!(apart <= 0.6e-5, "{model}, {name}: {apart}");
         }
     }
 }
@@ -226,7 +210,7 @@ fn simulated_from_below(folder: &Path, log: &str) {
 #[test]
 fn an_importer_that_gives_slopes_comes_to_the_same() {
     let Some(python) = python() else { return };
-    let folder = units("2");
+    let folder = units();
     let log = log("lift_2.1A_150kg.csv");
     simulated_from_below(folder.path(), &log);
     let arguments = ["plant.fmu", &log, "imported.csv", "slopes"];
@@ -243,19 +227,17 @@ fn an_importer_that_gives_slopes_comes_to_the_same() {
 fn the_own_simulation_of_an_importer_is_late_by_a_step() {
     let Some(python) = python() else { return };
     let log = log("lift_2.1A_150kg.csv");
-    for version in VERSIONS {
-        let folder = units(version);
-        simulated_from_below(folder.path(), &log);
-        let arguments = ["plant.fmu", &log, "imported.csv", "0.001"];
-        let imported = scripts().join("fmu_simulated.py");
-        script(python, folder.path(), &imported, &arguments);
-        let [simulated, imported] =
-            ["simulated.csv", "imported.csv"].map(|name| folder.path().join(name));
-        let apart_deg = largest_difference(&simulated, &imported, 1);
-        println!("FMPy's own simulation, FMI {version}: {apart_deg:.1e} degree");
-        // The hitch moves by 0.05 degree in a millisecond.
-        assert!(apart_deg <= 0.1, "FMI {version}: {apart_deg}");
-    }
+    let folder = units();
+    simulated_from_below(folder.path(), &log);
+    let arguments = ["plant.fmu", &log, "imported.csv", "0.001"];
+    let imported = scripts().join("fmu_simulated.py");
+    script(python, folder.path(), &imported, &arguments);
+    let [simulated, imported] =
+        ["simulated.csv", "imported.csv"].map(|name| folder.path().join(name));
+    let apart_deg = largest_difference(&simulated, &imported, 1);
+    println!("FMPy's own simulation: {apart_deg:.1e} degree");
+    // The hitch moves by 0.05 degree in a millisecond.
+    assert!(apart_deg <= 0.1, "{apart_deg}");
 }
 
 /// A move of `hitch loop` from 87.5 to 92.5 degrees at 150 kg and 40 C: the first of `--scenario quick --load 150`.
@@ -320,18 +302,16 @@ fn an_imported_controller_answers_as_the_command_does() {
         let options = options.as_ref().map_or(&[][..], |options| &options[..]);
         let command = answered(folder.path(), options, &lines);
         assert!(command.contains("lifting") && command.contains("fault:angle"));
-        for version in VERSIONS {
-            let controller = ["--controller", "--out", "own.fmu"];
-            export(folder.path(), version, &[&controller, options].concat());
-            let arguments = ["own.fmu", "lines.csv"];
-            let imported = scripts().join("fmu_controller.py");
-            let imported = script(python, folder.path(), &imported, &arguments);
-            let answers: Vec<&str> = imported
-                .lines()
-                .filter(|line| !line.starts_with('['))
-                .collect();
-            assert_eq!(answers, command.lines().collect::<Vec<&str>>());
-        }
+        let controller = ["--controller", "--out", "own.fmu"];
+        export(folder.path(), &[&controller, options].concat());
+        let arguments = ["own.fmu", "lines.csv"];
+        let imported = scripts().join("fmu_controller.py");
+        let imported = script(python, folder.path(), &imported, &arguments);
+        let answers: Vec<&str> = imported
+            .lines()
+            .filter(|line| !line.starts_with('['))
+            .collect();
+        assert_eq!(answers, command.lines().collect::<Vec<&str>>());
     }
 }
 
@@ -384,10 +364,7 @@ fn noise(samples: &[Sample]) -> String {
 fn coupled_units_move_as_the_closed_loop_does() {
     let Some(python) = python() else { return };
     let samples = quick_move("");
-    // A unit of FMI 2.0 with one of FMI 3.0.
-    let folder = units("2");
-    let controller = ["--controller", "--out", "controller.fmu"];
-    export(folder.path(), "3", &controller);
+    let folder = units();
     fs::write(folder.path().join("noise.csv"), noise(&samples)).unwrap();
     let arguments = [
         "plant.fmu",
@@ -455,20 +432,18 @@ fn coupled_units_move_as_the_closed_loop_does() {
 #[test]
 fn what_an_importer_must_not_do_is_refused() {
     let Some(python) = python() else { return };
-    for version in VERSIONS {
-        let folder = units(version);
-        let refusals = scripts().join("fmu_refusals.py");
-        let arguments = ["plant.fmu", "controller.fmu"];
-        let said = script(python, folder.path(), &refusals, &arguments);
-        println!("FMI {version}: {said}");
-        assert!(said.contains("refused: all of it"), "{said}");
-    }
+    let folder = units();
+    let refusals = scripts().join("fmu_refusals.py");
+    let arguments = ["plant.fmu", "controller.fmu"];
+    let said = script(python, folder.path(), &refusals, &arguments);
+    println!("{said}");
+    assert!(said.contains("refused: all of it"), "{said}");
 }
 
 #[test]
 fn the_example_of_the_documentation_couples_both() {
     let Some(python) = python() else { return };
-    let folder = units("2");
+    let folder = units();
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/fmu_loop.py");
     let arguments = ["plant.fmu", "controller.fmu"];
     let said = script(python, folder.path(), &example, &arguments);

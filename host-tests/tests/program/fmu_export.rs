@@ -18,7 +18,6 @@ fn a_wrong_export_is_one_line_and_leaves_no_file() {
             "no/x.fmu: cannot be written",
         ),
         (&["dynamic"], "--out"),
-        (&["dynamic", "--fmi", "1", "--out", "x.fmu"], "--fmi"),
         (
             &["dynamic", "--calibration", "bad.toml", "--out", "x.fmu"],
             "--controller",

@@ -102,12 +102,6 @@ fn documents_of_the_closed_loop_follow_their_schemas() {
 }
 
 #[test]
-fn the_document_of_the_paper_follows_its_schema() {
-    let dir = tempfile::tempdir().unwrap();
-    assert_valid(dir.path(), "paper", "");
-}
-
-#[test]
 fn the_document_of_the_effects_follows_its_schema() {
     assert_valid(Path::new("."), "effects", "");
     assert_valid(Path::new("."), "effects", "coulomb-friction");

@@ -11,7 +11,6 @@ use crate::component::Component;
 use crate::controller::ControllerComponent;
 use crate::description::{self, About};
 use crate::plant::PlantComponent;
-use crate::version::Version;
 
 /// Space of the names whose ids are the units' checksums.
 const SPACE: Uuid = Uuid::from_u128(0x6d1f_4b52_9c1e_4c3a_8f57_1b0a_2e77_c9d4);
@@ -59,11 +58,11 @@ pub struct Content {
 }
 
 impl Content {
-    /// The content of a model file or a calibration file, described in a version of the standard.
+    /// The content of a model file or a calibration file, with its description.
     ///
     /// # Errors
     /// A fault in the file, with line and column.
-    pub fn parse(version: Version, kind: Kind, file: &SourceFile) -> Result<Self, InputError> {
+    pub fn parse(kind: Kind, file: &SourceFile) -> Result<Self, InputError> {
         let (component, name): (Box<dyn Component>, String) = match kind {
             Kind::Plant => {
                 let model = hitch_model_file::parse(file)?;
@@ -79,7 +78,7 @@ impl Content {
         let name = name.as_str();
         let described = |guid: &str| {
             let about = About { kind, name, guid };
-            description::write(version, about, component.variables())
+            description::write(about, component.variables())
         };
         let hashed = format!("{}\n{}", described(""), file.text);
         let guid = format!("{{{}}}", Uuid::new_v5(&SPACE, hashed.as_bytes()));
@@ -94,7 +93,7 @@ impl Content {
     ///
     /// # Errors
     /// If it has no file of a unit, or the file is wrong.
-    pub fn read(version: Version, resources: &Path) -> Result<Self, InputError> {
+    pub fn read(resources: &Path) -> Result<Self, InputError> {
         let there = Kind::ALL
             .into_iter()
             .find(|kind| resources.join(kind.file()).exists());
@@ -107,7 +106,7 @@ impl Content {
             ));
         };
         let file = SourceFile::read(&resources.join(kind.file()))?;
-        Self::parse(version, kind, &file)
+        Self::parse(kind, &file)
     }
 }
 
@@ -120,7 +119,7 @@ mod tests {
             path: "model.toml".into(),
             text: text.to_owned(),
         };
-        Content::parse(Version::Two, Kind::Plant, &file).unwrap()
+        Content::parse(Kind::Plant, &file).unwrap()
     }
 
     #[test]
@@ -135,9 +134,7 @@ mod tests {
     #[test]
     fn a_folder_without_content_is_refused() {
         let folder = tempfile::tempdir().unwrap();
-        let error = Content::read(Version::Three, folder.path())
-            .map(|_| ())
-            .unwrap_err();
+        let error = Content::read(folder.path()).map(|_| ()).unwrap_err();
         assert!(
             error
                 .to_string()

@@ -1,7 +1,6 @@
-//! Plant and controller as co-simulation units of FMI 2.0 and FMI 3.0 (docs/fmu.md).
+//! Plant and controller as co-simulation units of FMI 2.0 (docs/fmu.md).
 //!
-//! From the bottom layer to the top: the [`version`]s of the standard; the [`variable`]s of a unit and their
-//! [`Value`](variable::Value)s; the [`component`], which is what a unit simulates, with [`plant`] and [`controller`]; the
+//! From the bottom layer to the top: the [`variable`]s of a unit and their [`Value`](variable::Value)s; the [`component`], which is what a unit simulates, with [`plant`] and [`controller`]; the
 //! [`content`] that a unit carries, and its [`description`] for importers; and the interface in C, which is what the
 //! shared library exports.
 //!
@@ -19,4 +18,3 @@ mod location;
 pub mod plant;
 mod units;
 pub mod variable;
-pub mod version;

@@ -5,7 +5,6 @@ use std::{env, fs};
 
 use hitch_controller_host::calibration_file;
 use hitch_fmu::content::Kind;
-use hitch_fmu::version::Version;
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 
@@ -19,9 +18,8 @@ use crate::{fmu_export, output};
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Examples:\n  hitch export-fmu explained.toml --out plant.fmu\n  \
-    hitch export-fmu --controller --calibration calibration.toml --out controller.fmu\n  \
-    hitch export-fmu --fmi 3 dynamic --out plant.fmu\n\n\
-    The unit follows FMI 2.0 or 3.0 for co-simulation and runs on machines like this one. It holds the shared library, the \
+    hitch export-fmu --controller --calibration calibration.toml --out controller.fmu\n\n\
+    The unit follows FMI 2.0 for co-simulation and runs on machines like this one. It holds the shared library, the \
     model or the calibration, and modelDescription.xml, which lists the variables with their units."
 )]
 pub struct Args {
@@ -34,30 +32,9 @@ pub struct Args {
     /// The controller's calibration; without it, the nominal one
     #[arg(long, value_name = "C.toml", requires = "controller")]
     calibration: Option<PathBuf>,
-    /// Version of the standard: 2 for FMI 2.0, 3 for FMI 3.0
-    #[arg(long, value_enum, default_value = "2")]
-    fmi: Fmi,
     /// Where the unit goes
     #[arg(long, value_name = "F.fmu")]
     out: PathBuf,
-}
-
-/// A version as the command line names it.
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum Fmi {
-    #[value(name = "2")]
-    Two,
-    #[value(name = "3")]
-    Three,
-}
-
-impl From<Fmi> for Version {
-    fn from(fmi: Fmi) -> Self {
-        match fmi {
-            Fmi::Two => Self::Two,
-            Fmi::Three => Self::Three,
-        }
-    }
 }
 
 /// Runs the command.
@@ -71,7 +48,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let (kind, file) = args.content()?;
     let library = library()?;
     let progress = Progress::start(format!("writing {}", args.out.display()));
-    let unit = fmu_export::archive(args.fmi.into(), kind, &file, &library)?;
+    let unit = fmu_export::archive(kind, &file, &library)?;
     drop(progress);
     output::write_file(&args.out, &unit)
 }

@@ -19,7 +19,6 @@ pub mod loop_scenario;
 pub mod main_job;
 pub mod man;
 pub mod model;
-pub mod paper;
 pub mod record;
 pub mod schema;
 pub mod serve;

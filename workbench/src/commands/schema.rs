@@ -10,13 +10,12 @@ use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::explanation::{Diagnosis, Explanation};
 use crate::output::{self, Document};
-use crate::paper::Paper;
 
 /// Makes the schema of a document.
 type MakeSchema = fn() -> Schema;
 
 /// Commands with the option `--json`, and the schema of their document.
-const DOCUMENTS: [(&str, MakeSchema); 10] = [
+const DOCUMENTS: [(&str, MakeSchema); 9] = [
     ("compare", schema::<Comparison>),
     ("diagnose", schema::<Diagnosis>),
     ("explain", schema::<Explanation>),
@@ -25,7 +24,6 @@ const DOCUMENTS: [(&str, MakeSchema); 10] = [
     ("model fit", schema::<ShownBaseFit>),
     ("loop", schema::<loop_::Driven<'static>>),
     ("tune", schema::<tune::Tuned>),
-    ("paper", schema::<Paper>),
     ("effects", schema::<effects::Catalogue>),
 ];
 

@@ -1,25 +1,19 @@
 //! The archive of a unit.
 
 use hitch_fmu::content::{Content, Kind};
-use hitch_fmu::version::Version;
 use hitch_input::source_file::SourceFile;
 
 use super::library::platform;
 use crate::archive::zipped;
 use crate::error::Error;
 
-/// The bytes of a unit of a version of the standard with the content of `file` and the `library`.
+/// The bytes of a unit with the content of `file` and the `library`.
 ///
 /// # Errors
 /// If the file is wrong, or the standard has no name for this machine.
-pub fn archive(
-    version: Version,
-    kind: Kind,
-    file: &SourceFile,
-    library: &[u8],
-) -> Result<Vec<u8>, Error> {
-    let content = Content::parse(version, kind, file)?;
-    let (platform, suffix) = platform(version)?;
+pub fn archive(kind: Kind, file: &SourceFile, library: &[u8]) -> Result<Vec<u8>, Error> {
+    let content = Content::parse(kind, file)?;
+    let (platform, suffix) = platform()?;
     let binary = format!("binaries/{platform}/{}{suffix}", kind.identifier());
     let entries = [
         (

@@ -3,8 +3,6 @@
 use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
 use std::path::{Path, PathBuf};
 
-use hitch_fmu::version::Version;
-
 use crate::error::Error;
 
 /// The library's file beside the program, or where `cargo` or an installation puts it.
@@ -36,36 +34,28 @@ fn folders(program: &Path) -> Vec<PathBuf> {
     ]
 }
 
-/// Name of this machine's folder below `binaries` in a version of the standard, and the ending of a library there.
+/// Name of this machine's folder below `binaries`, and the ending of a library there.
 ///
 /// # Errors
 /// If the standard has no name for this machine.
-pub fn platform(version: Version) -> Result<(&'static str, &'static str), Error> {
-    match folder(version, OS, ARCH) {
+pub fn platform() -> Result<(&'static str, &'static str), Error> {
+    match folder(OS, ARCH) {
         Some(folder) => Ok((folder, DLL_SUFFIX)),
         None => Err(Error::Usage(format!(
-            "FMI {} has no name for {OS} on {ARCH}; export on Linux, Windows or macOS",
-            version.number()
+            "FMI 2.0 has no name for {OS} on {ARCH}; export on Linux, Windows or macOS"
         ))),
     }
 }
 
-fn folder(version: Version, os: &str, arch: &str) -> Option<&'static str> {
-    Some(match (version, os, arch) {
-        (Version::Two, "linux", "x86_64") => "linux64",
-        (Version::Two, "linux", "x86") => "linux32",
-        (Version::Two, "windows", "x86_64") => "win64",
-        (Version::Two, "windows", "x86") => "win32",
-        // One library for both processors, as far as importers of FMI 2.0 know.
-        (Version::Two, "macos", _) => "darwin64",
-        (Version::Three, "linux", "x86_64") => "x86_64-linux",
-        (Version::Three, "linux", "x86") => "x86-linux",
-        (_, "linux", "aarch64") => "aarch64-linux",
-        (Version::Three, "windows", "x86_64") => "x86_64-windows",
-        (Version::Three, "windows", "x86") => "x86-windows",
-        (Version::Three, "windows", "aarch64") => "aarch64-windows",
-        (Version::Three, "macos", "x86_64") => "x86_64-darwin",
-        (Version::Three, "macos", "aarch64") => "aarch64-darwin",
+fn folder(os: &str, arch: &str) -> Option<&'static str> {
+    Some(match (os, arch) {
+        ("linux", "x86_64") => "linux64",
+        ("linux", "x86") => "linux32",
+        ("linux", "aarch64") => "aarch64-linux",
+        ("windows", "x86_64") => "win64",
+        ("windows", "x86") => "win32",
+        // One library for both processors, as far as importers know.
+        ("macos", _) => "darwin64",
         _ => return None,
     })
 }
@@ -75,21 +65,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn machines_have_the_names_of_the_version() {
-        for (os, arch, two, three) in [
-            ("linux", "x86_64", Some("linux64"), Some("x86_64-linux")),
-            (
-                "linux",
-                "aarch64",
-                Some("aarch64-linux"),
-                Some("aarch64-linux"),
-            ),
-            ("windows", "x86_64", Some("win64"), Some("x86_64-windows")),
-            ("macos", "aarch64", Some("darwin64"), Some("aarch64-darwin")),
-            ("plan9", "x86_64", None, None),
+    fn machines_have_the_names_of_the_standard() {
+        for (os, arch, expected) in [
+            ("linux", "x86_64", Some("linux64")),
+            ("linux", "aarch64", Some("aarch64-linux")),
+            ("windows", "x86_64", Some("win64")),
+            ("macos", "aarch64", Some("darwin64")),
+            ("plan9", "x86_64", None),
         ] {
-            let names = Version::ALL.map(|version| folder(version, os, arch));
-            assert_eq!(names, [two, three], "{os}, {arch}");
+            assert_eq!(folder(os, arch), expected, "{os}, {arch}");
         }
     }
 

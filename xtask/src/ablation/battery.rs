@@ -131,7 +131,7 @@ impl Battery {
                 .args(arguments.split(' '))
                 .current_dir(workspace::root().join("host-tests"));
             if self == Self::Identification {
-                command.args(["--methods", "explain", "--bench"]);
+                command.args(["--bench"]);
             }
             match without {
                 Some(name) => command.env(SWITCH, name),

@@ -6,7 +6,6 @@ use super::logger::Logger;
 use super::types::{Status, ValueReference};
 use crate::component::{Component, Refusal};
 use crate::variable::{Causality, Value, Variable};
-use crate::version::Version;
 
 /// Deviation of a point in time that counts as rounding, relative to the larger of it and 1 s.
 const ROUNDING: f64 = 1e-9;
@@ -69,16 +68,13 @@ pub struct Stored {
 pub struct Instance {
     pub logger: Logger,
     now: Stored,
-    version: Version,
-    /// The time that was handed out last.
-    time: Value,
     /// Texts that were handed out last.
     pub texts: Vec<CString>,
 }
 
 impl Instance {
     /// An instance with the values of the start.
-    pub fn new(version: Version, component: Box<dyn Component>, logger: Logger) -> Self {
+    pub fn new(component: Box<dyn Component>, logger: Logger) -> Self {
         let values: Vec<Value> = component
             .variables()
             .iter()
@@ -96,8 +92,6 @@ impl Instance {
                 time_s: 0.0,
                 stop_s: None,
             },
-            version,
-            time: Value::Real(0.0),
             texts: Vec::new(),
         }
     }
@@ -135,11 +129,6 @@ impl Instance {
         Ok(())
     }
 
-    /// Whether it is the independent variable, which FMI 3.0 has behind the component's own.
-    fn is_time(&self, reference: ValueReference) -> bool {
-        self.version == Version::Three && reference as usize == self.now.component.variables().len()
-    }
-
     fn variable(&self, reference: ValueReference) -> Result<&Variable, Fault> {
         let variables = self.now.component.variables();
         usize::try_from(reference)
@@ -155,10 +144,6 @@ impl Instance {
 
     /// The value of a variable. Outputs are calculated during initialisation as well.
     pub fn get(&mut self, reference: ValueReference) -> Result<&Value, Fault> {
-        if self.is_time(reference) {
-            self.time = Value::Real(self.now.time_s);
-            return Ok(&self.time);
-        }
         self.variable(reference)?;
         if self.now.phase == Phase::Initialising {
             self.initialise()
@@ -170,11 +155,6 @@ impl Instance {
     /// Sets a variable to a value of its type.
     pub fn set(&mut self, reference: ValueReference, value: Value) -> Result<(), Fault> {
         let phase = self.now.phase;
-        if self.is_time(reference) {
-            return Err(Fault::error(
-                "time follows from the steps; it cannot be set",
-            ));
-        }
         let variable = self.variable(reference)?;
         let name = &variable.name;
         let fault = |why: &str| Err(Fault::error(format!("{name} {why}")));

@@ -4,26 +4,14 @@ use std::ffi::{CString, c_void};
 
 use super::types::{Status, Text};
 
-/// Writes a message, FMI 2.0: environment, instance, status, category, format as of `printf`, and its arguments.
+/// Writes a message: environment, instance, status, category, format as of `printf`, and its arguments.
 pub type FormatFunction = unsafe extern "C" fn(*mut c_void, Text, Status, Text, Text, ...);
-/// Writes a message, FMI 3.0: environment, status, category, message.
-pub type MessageFunction = unsafe extern "C" fn(*mut c_void, Status, Text, Text);
-
-/// The importer's function.
-#[derive(Clone)]
-pub enum Sink {
-    /// None: messages are dropped.
-    Nowhere,
-    /// That of FMI 2.0, with the name of the instance.
-    Format(FormatFunction, CString),
-    /// That of FMI 3.0.
-    Message(MessageFunction),
-}
 
 /// The importer's function for messages, with the pointer that is passed back to it.
 #[derive(Clone)]
 pub struct Logger {
-    sink: Sink,
+    function: Option<FormatFunction>,
+    instance: CString,
     environment: *mut c_void,
 }
 
@@ -31,43 +19,38 @@ pub struct Logger {
 unsafe impl Send for Logger {}
 
 impl Logger {
-    /// A logger with a function of the importer.
+    /// A logger of the instance with this name. Without a function of the importer messages are dropped.
     #[must_use]
-    pub fn new(sink: Sink, environment: *mut c_void) -> Self {
-        Self { sink, environment }
+    pub fn new(function: Option<FormatFunction>, instance: &str, environment: *mut c_void) -> Self {
+        Self {
+            function,
+            instance: without_zeros(instance),
+            environment,
+        }
     }
 
     /// Writes a message.
     pub fn write(&self, status: Status, text: &str) {
+        let Some(function) = self.function else {
+            return;
+        };
         let category = match status {
             Status::Discard => c"logStatusDiscard",
             _ => c"logStatusError",
-        }
-        .as_ptr();
-        let environment = self.environment;
-        match &self.sink {
-            Sink::Nowhere => (),
-            Sink::Format(function, instance) => {
-                // It is taken for a format.
-                let text = without_zeros(&text.replace('%', "%%"));
-                // SAFETY: the importer promises that its function can be called as the standard declares it until the
-                // instance is freed. The texts end with a zero byte and live until the call returns. The format has no
-                // argument.
-                unsafe {
-                    function(
-                        environment,
-                        instance.as_ptr(),
-                        status,
-                        category,
-                        text.as_ptr(),
-                    )
-                }
-            }
-            Sink::Message(function) => {
-                let text = without_zeros(text);
-                // SAFETY: as above; there is no format.
-                unsafe { function(environment, status, category, text.as_ptr()) }
-            }
+        };
+        // It is taken for a format.
+        let text = without_zeros(&text.replace('%', "%%"));
+        // SAFETY: the importer promises that its function can be called as the standard declares it until the
+        // instance is freed. The texts end with a zero byte and live until the call returns. The format has no
+        // argument.
+        unsafe {
+            function(
+                self.environment,
+                self.instance.as_ptr(),
+                status,
+                category.as_ptr(),
+                text.as_ptr(),
+            )
         }
     }
 }

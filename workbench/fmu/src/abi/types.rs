@@ -1,6 +1,8 @@
-//! Types that both versions of the standard have.
+//! Types of the standard.
 
-use std::ffi::{c_char, c_void};
+use std::ffi::{c_char, c_int, c_void};
+
+use super::logger::FormatFunction;
 
 /// A unit's instance, as an importer holds it.
 pub type Handle = *mut c_void;
@@ -25,6 +27,29 @@ pub enum Status {
     Error = 3,
     /// No instance can be used any more.
     Fatal = 4,
-    /// Not yet done, FMI 2.0 only; never returned here.
+    /// Not yet done, never returned here.
     Pending = 5,
+}
+
+/// A truth value; 0 is false.
+pub type Boolean = c_int;
+
+/// False.
+pub const FALSE: Boolean = 0;
+/// `fmi2Type` of an instance for co-simulation.
+pub const CO_SIMULATION: c_int = 1;
+
+/// Functions of the importer.
+#[repr(C)]
+pub struct Callbacks {
+    /// Writes a message.
+    pub logger: Option<FormatFunction>,
+    /// Allocates memory; not used here.
+    pub allocate_memory: Option<unsafe extern "C" fn(usize, usize) -> *mut c_void>,
+    /// Frees memory; not used here.
+    pub free_memory: Option<unsafe extern "C" fn(*mut c_void)>,
+    /// Told at the end of an asynchronous step; not used here.
+    pub step_finished: Option<unsafe extern "C" fn(*mut c_void, Status)>,
+    /// Given back to the importer with each message.
+    pub environment: *mut c_void,
 }

@@ -1,11 +1,11 @@
 //! Stored states, and what needs derivatives.
 
 use std::ffi::c_char;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::abi::guard::call;
-use crate::abi::instance::{Fault, Instance};
-use crate::abi::stored;
-use crate::abi::types::{Handle, StateHandle, Status, ValueReference};
+use super::guard::call;
+use super::instance::{Fault, Instance, Stored};
+use super::types::{Handle, StateHandle, Status, ValueReference};
 
 /// Message for a function that no unit supports.
 fn unsupported(flag: &str) -> Fault {
@@ -20,8 +20,20 @@ fn unsupported(flag: &str) -> Fault {
 /// As the standard says: `component` is an instance, and `state` points to null or to a stored state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(component: Handle, state: *mut StateHandle) -> Status {
-    // SAFETY: the importer gives null or an instance, and null or a place for a state.
-    unsafe { stored::store(component, "fmi2GetFMUstate", state) }
+    let store = |instance: &mut Instance| {
+        // SAFETY: the importer gives null or a place for a state.
+        let place = unsafe { state.as_mut() };
+        let place = place.ok_or_else(|| Fault::error("the place for the state is null"))?;
+        let stored = instance.store();
+        // SAFETY: the place holds null or a state that was stored here.
+        match unsafe { place.cast::<Stored>().as_mut() } {
+            Some(before) => *before = stored,
+            None => *place = Box::into_raw(Box::new(stored)).cast(),
+        }
+        Ok(())
+    };
+    // SAFETY: the importer gives null or an instance, and calls one function at a time.
+    unsafe { call(component, "fmi2GetFMUstate", store) }
 }
 
 /// Goes back to a stored state.
@@ -30,8 +42,16 @@ pub unsafe extern "C" fn fmi2GetFMUstate(component: Handle, state: *mut StateHan
 /// As the standard says: `component` is an instance, and `state` a state that was stored of it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(component: Handle, state: StateHandle) -> Status {
-    // SAFETY: the importer gives null or an instance, and null or a state that was stored of it.
-    unsafe { stored::restore(component, "fmi2SetFMUstate", state) }
+    let restore = |instance: &mut Instance| {
+        // SAFETY: the importer gives null or a state that was stored here.
+        let stored = unsafe { state.cast::<Stored>().as_ref() };
+        let stored =
+            stored.ok_or_else(|| Fault::error("there is no stored state; store one first"))?;
+        instance.restore(stored);
+        Ok(())
+    };
+    // SAFETY: the importer gives null or an instance, and calls one function at a time.
+    unsafe { call(component, "fmi2SetFMUstate", restore) }
 }
 
 /// Frees a stored state.
@@ -40,8 +60,21 @@ pub unsafe extern "C" fn fmi2SetFMUstate(component: Handle, state: StateHandle) 
 /// As the standard says: `component` is an instance, and `state` points to null or to a stored state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(component: Handle, state: *mut StateHandle) -> Status {
-    // SAFETY: the importer gives null or an instance, and null or a place that holds null or a stored state.
-    unsafe { stored::free(component, "fmi2FreeFMUstate", state) }
+    let free = |_: &mut Instance| {
+        // SAFETY: the importer gives null or a place that holds null or a stored state.
+        let place = unsafe { state.as_mut() };
+        let held = place.map_or(std::ptr::null_mut(), |place| {
+            std::mem::replace(place, std::ptr::null_mut())
+        });
+        if !held.is_null() {
+            // SAFETY: it is not null, so it was made by `store` from a box, and the place no longer has it.
+            let stored = unsafe { Box::from_raw(held.cast::<Stored>()) };
+            let _ = catch_unwind(AssertUnwindSafe(|| drop(stored)));
+        }
+        Ok(())
+    };
+    // SAFETY: the importer gives null or an instance, and calls one function at a time.
+    unsafe { call(component, "fmi2FreeFMUstate", free) }
 }
 
 /// States have no image in bytes.

@@ -1,16 +1,12 @@
 //! `modelDescription.xml`: what an importer has to know of a unit.
 
-mod fmi2;
-mod fmi3;
-
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use crate::content::Kind;
 use crate::controller;
 use crate::units;
-use crate::variable::{Causality, Variable};
-use crate::version::Version;
+use crate::variable::{Causality, Value, Variable};
 
 /// Categories of messages.
 pub const LOG_CATEGORIES: [&str; 2] = ["logStatusDiscard", "logStatusError"];
@@ -38,14 +34,10 @@ impl About<'_> {
 
 /// The text of the file. (Writing to a string cannot fail.)
 #[must_use]
-pub fn write(version: Version, about: About<'_>, variables: &[Variable]) -> String {
+pub fn write(about: About<'_>, variables: &[Variable]) -> String {
     let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    match version {
-        Version::Two => fmi2::write_head(&mut xml, about),
-        Version::Three => fmi3::write_head(&mut xml, about),
-    }
-    let of_time = (version == Version::Three).then_some(fmi3::TIME_UNIT);
-    write_units(&mut xml, variables, of_time);
+    write_head(&mut xml, about);
+    write_units(&mut xml, variables);
     xml.push_str("  <LogCategories>\n");
     for category in LOG_CATEGORIES {
         let _ = writeln!(xml, "    <Category name=\"{category}\"/>");
@@ -55,17 +47,31 @@ pub fn write(version: Version, about: About<'_>, variables: &[Variable]) -> Stri
         "  </LogCategories>\n  <DefaultExperiment startTime=\"0\" stepSize=\"{}\"/>\n",
         controller::STEP_S
     );
-    match version {
-        Version::Two => fmi2::write_variables(&mut xml, variables),
-        Version::Three => fmi3::write_variables(&mut xml, variables),
-    }
+    write_variables(&mut xml, variables);
     xml.push_str("</fmiModelDescription>\n");
     xml
 }
 
-fn write_units(xml: &mut String, variables: &[Variable], of_time: Option<&'static str>) {
-    let units = variables.iter().map(|variable| variable.unit);
-    let units: BTreeSet<&str> = units.chain(of_time).collect();
+fn write_head(xml: &mut String, about: About<'_>) {
+    let _ = write!(
+        xml,
+        "<fmiModelDescription fmiVersion=\"2.0\" modelName=\"{}\" guid=\"{}\"\n    \
+         description=\"{}\" version=\"{}\" generationTool=\"hitch {}\"\n    \
+         variableNamingConvention=\"structured\">\n  \
+         <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\"\n    \
+         canInterpolateInputs=\"true\" canGetAndSetFMUstate=\"true\"\n    \
+         canNotUseMemoryManagementFunctions=\"true\"/>\n",
+        escaped(about.name),
+        about.guid,
+        about.text(),
+        env!("CARGO_PKG_VERSION"),
+        env!("CARGO_PKG_VERSION"),
+        about.kind.identifier(),
+    );
+}
+
+fn write_units(xml: &mut String, variables: &[Variable]) {
+    let units: BTreeSet<&str> = variables.iter().map(|variable| variable.unit).collect();
     xml.push_str("  <UnitDefinitions>\n");
     for unit in units.into_iter().filter(|unit| !unit.is_empty()) {
         let name = escaped(unit);
@@ -75,6 +81,53 @@ fn write_units(xml: &mut String, variables: &[Variable], of_time: Option<&'stati
         };
     }
     xml.push_str("  </UnitDefinitions>\n");
+}
+
+fn write_variables(xml: &mut String, variables: &[Variable]) {
+    xml.push_str("  <ModelVariables>\n");
+    for (reference, variable) in variables.iter().enumerate() {
+        write_variable(xml, reference, variable);
+    }
+    xml.push_str("  </ModelVariables>\n");
+    write_structure(xml, variables);
+}
+
+fn write_variable(xml: &mut String, reference: usize, variable: &Variable) {
+    let _ = write!(
+        xml,
+        "    <ScalarVariable name=\"{}\" valueReference=\"{reference}\" {}\n      \
+         description=\"{}\">\n      ",
+        escaped(&variable.name),
+        roles(variable),
+        escaped(&variable.description),
+    );
+    let start = |value: &str| start(variable, value);
+    let _ = match &variable.start {
+        Value::Real(value) => write!(
+            xml,
+            "<Real{}{}/>",
+            start(&value.to_string()),
+            of_real(variable)
+        ),
+        Value::Integer(value) => write!(xml, "<Integer{}/>", start(&value.to_string())),
+        Value::Boolean(value) => write!(xml, "<Boolean{}/>", start(&value.to_string())),
+        Value::Text(value) => write!(xml, "<String{}/>", start(value)),
+    };
+    xml.push_str("\n    </ScalarVariable>\n");
+}
+
+fn write_structure(xml: &mut String, variables: &[Variable]) {
+    let outputs: String = variables
+        .iter()
+        .enumerate()
+        .filter(|(_, variable)| variable.causality == Causality::Output)
+        .map(|(place, _)| format!("      <Unknown index=\"{}\"/>\n", place + 1))
+        .collect();
+    let _ = write!(
+        xml,
+        "  <ModelStructure>\n    <Outputs>\n{outputs}    </Outputs>\n    \
+         <InitialUnknowns>\n{outputs}    </InitialUnknowns>\n  </ModelStructure>\n"
+    );
 }
 
 /// Causality, variability and, where it is not the standard's, the source of the value at the start.

@@ -2,11 +2,11 @@
 
 use std::ffi::c_int;
 
-use super::types::{FMI2_FALSE, Fmi2Boolean};
-use crate::abi::access::{SETTABLE, get, get_texts, set, set_texts};
-use crate::abi::guard::{array, call};
-use crate::abi::instance::{Fault, Instance};
-use crate::abi::types::{Handle, Status, Text, ValueReference};
+use super::access::{SETTABLE, get, other_type, set};
+use super::guard::{array, array_mut, call, text};
+use super::instance::{Fault, Instance};
+use super::logger::without_zeros;
+use super::types::{Boolean, FALSE, Handle, Status, Text, ValueReference};
 use crate::variable::Value;
 
 /// Reads real numbers.
@@ -47,7 +47,7 @@ pub unsafe extern "C" fn fmi2SetReal(
     count: usize,
     values: *const f64,
 ) -> Status {
-    let of_type = |value| Some(Value::Real(value));
+    let of_type = |value| Value::Real(value);
     // SAFETY: the importer gives null or an instance, and arrays of this size.
     unsafe {
         set(
@@ -98,7 +98,7 @@ pub unsafe extern "C" fn fmi2SetInteger(
     count: usize,
     values: *const c_int,
 ) -> Status {
-    let of_type = |value| Some(Value::Integer(value));
+    let of_type = |value| Value::Integer(value);
     // SAFETY: the importer gives null or an instance, and arrays of this size.
     unsafe {
         set(
@@ -120,10 +120,10 @@ pub unsafe extern "C" fn fmi2GetBoolean(
     component: Handle,
     references: *const ValueReference,
     count: usize,
-    values: *mut Fmi2Boolean,
+    values: *mut Boolean,
 ) -> Status {
     let as_type = |value: &Value| match value {
-        Value::Boolean(value) => Some(Fmi2Boolean::from(*value)),
+        Value::Boolean(value) => Some(Boolean::from(*value)),
         _ => None,
     };
     // SAFETY: the importer gives null or an instance, and arrays of this size.
@@ -147,9 +147,9 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     component: Handle,
     references: *const ValueReference,
     count: usize,
-    values: *const Fmi2Boolean,
+    values: *const Boolean,
 ) -> Status {
-    let of_type = |value| Some(Value::Boolean(value != FMI2_FALSE));
+    let of_type = |value| Value::Boolean(value != FALSE);
     // SAFETY: the importer gives null or an instance, and arrays of this size.
     unsafe {
         set(
@@ -173,8 +173,25 @@ pub unsafe extern "C" fn fmi2GetString(
     count: usize,
     values: *mut Text,
 ) -> Status {
-    // SAFETY: the importer gives null or an instance, and arrays of this size.
-    unsafe { get_texts(component, "fmi2GetString", (references, count), values) }
+    let read = |instance: &mut Instance| {
+        // SAFETY: the importer gives null or arrays with so many places.
+        let (references, places) =
+            unsafe { (array(references, count)?, array_mut(values, count)?) };
+        let mut texts = Vec::with_capacity(references.len());
+        for reference in references {
+            match instance.get(*reference)? {
+                Value::Text(text) => texts.push(without_zeros(text)),
+                _ => return Err(other_type(*reference)),
+            }
+        }
+        instance.texts = texts;
+        for (place, text) in places.iter_mut().zip(&instance.texts) {
+            *place = text.as_ptr();
+        }
+        Ok(())
+    };
+    // SAFETY: the importer gives null or an instance, and calls one function at a time.
+    unsafe { call(component, "fmi2GetString", read) }
 }
 
 /// Sets texts. No unit has one that can be set, so it refuses all but an empty list.
@@ -188,8 +205,20 @@ pub unsafe extern "C" fn fmi2SetString(
     count: usize,
     values: *const Text,
 ) -> Status {
-    // SAFETY: the importer gives null or an instance, and arrays of this size.
-    unsafe { set_texts(component, "fmi2SetString", (references, count), values) }
+    let write = |instance: &mut Instance| {
+        instance.only_in(&SETTABLE)?;
+        // SAFETY: the importer gives null or arrays with so many elements.
+        let (references, values) = unsafe { (array(references, count)?, array(values, count)?) };
+        for (reference, value) in references.iter().zip(values) {
+            // SAFETY: the importer gives null or a text that ends with a zero byte.
+            let value = unsafe { text(*value) };
+            let value = value.ok_or_else(|| Fault::error("a text is null or not UTF-8"))?;
+            instance.set(*reference, Value::Text(value.to_owned()))?;
+        }
+        Ok(())
+    };
+    // SAFETY: the importer gives null or an instance, and calls one function at a time.
+    unsafe { call(component, "fmi2SetString", write) }
 }
 
 /// Sets first derivatives of inputs, 1/s, for the next step: inputs then change linearly within it.

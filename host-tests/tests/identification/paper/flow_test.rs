@@ -7,14 +7,16 @@
 
 use hitch_campaign::{Bench, Campaign, Noise, Run};
 use hitch_plant::{Channel, Valve};
+use rand::{Rng, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64;
 
-use crate::flow_table::table_2;
-use crate::tables::{LOWER_DROP_BAR, Measured, TABLE_5_LIFT, TABLE_5_LOWER};
+use super::tables::{LOWER_DROP_BAR, saturation_lpm, table_2, table_5, threshold_a};
 
 /// Step of the current, A (section 3.4).
 const STEP_A: f64 = 0.1;
 /// Highest current, A (section 3.4).
-const HIGHEST_A: f64 = 3.5;
+pub const HIGHEST_A: f64 = 3.5;
 /// Duration of each current, s; chosen.
 const HOLD_S: f64 = 1.0;
 /// Time from one current to the next, s; chosen: adjusted by a knob, not by a relay.
@@ -27,61 +29,20 @@ const FLOW_SIGMA_LPM: f64 = 0.15;
 const LIFT_PORTS_BAR: [f64; 2] = [20.0, 70.0];
 /// Port pressures of the lowering runs, bar: that of Table 2B and, chosen, a higher one.
 const LOWER_PORTS_BAR: [f64; 2] = [LOWER_DROP_BAR, 40.0];
+/// Seed of the noise.
+const SEED: u64 = 20_200_850;
 
-/// Deviation of the measured valve from Table 2.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Deviation {
-    /// Shift of the threshold, A.
-    pub threshold_shift_a: f64,
-    /// Relative change of the flow.
-    pub flow_scale: f64,
-}
-
-/// Deviation of a valve in Table 5 from Table 2.
-pub fn deviation(valve: Valve) -> Deviation {
-    let table = table_2(valve);
-    let saturation_lpm = table
-        .iter()
-        .map(|(_, flow_lpm)| *flow_lpm)
-        .fold(0.0, f64::max);
-    let threshold_shift_a = match valve {
-        Valve::Lift => 0.0,
-        Valve::Lowering => TABLE_5_LOWER.threshold_a - threshold_a(table),
-    };
-    Deviation {
-        threshold_shift_a,
-        flow_scale: table_5(valve).saturation_lpm / saturation_lpm - 1.0,
-    }
-}
-
-/// The column of Table 5 of a valve.
-pub fn table_5(valve: Valve) -> Measured {
+/// Shift of a valve's threshold from Table 2 to Table 5, A.
+pub fn threshold_shift_a(valve: Valve) -> f64 {
     match valve {
-        Valve::Lift => TABLE_5_LIFT,
-        Valve::Lowering => TABLE_5_LOWER,
+        Valve::Lift => 0.0,
+        Valve::Lowering => table_5(valve).threshold_a - threshold_a(table_2(valve)),
     }
 }
 
-/// Last current of a table without flow, A.
-pub fn threshold_a(table: &[(f64, f64)]) -> f64 {
-    table
-        .iter()
-        .filter(|(_, flow_lpm)| *flow_lpm == 0.0)
-        .map(|(current_a, _)| *current_a)
-        .fold(0.0, f64::max)
-}
-
-/// First current of a table with the full flow, A.
-pub fn saturation_a(table: &[(f64, f64)]) -> f64 {
-    let saturation_lpm = table
-        .iter()
-        .map(|(_, flow_lpm)| *flow_lpm)
-        .fold(0.0, f64::max);
-    table
-        .iter()
-        .filter(|(_, flow_lpm)| *flow_lpm == saturation_lpm)
-        .map(|(current_a, _)| *current_a)
-        .fold(f64::INFINITY, f64::min)
+/// Relative change of a valve's flow from Table 2 to Table 5.
+pub fn flow_scale(valve: Valve) -> f64 {
+    table_5(valve).saturation_lpm / saturation_lpm(table_2(valve)) - 1.0
 }
 
 /// The flow test of both valves.
@@ -94,23 +55,20 @@ pub fn campaign() -> Campaign {
         ..Noise::default()
     };
     noise.channels[Channel::Flow.index()] = Some(FLOW_SIGMA_LPM);
-    let mut gauss = Gauss::new();
-    let runs = lift
-        .into_iter()
-        .chain(lower)
-        .map(|(valve, port_bar)| run(valve, port_bar, &mut gauss))
-        .collect();
+    let mut random = Pcg64::seed_from_u64(SEED);
+    let runs = lift.into_iter().chain(lower);
+    let runs = runs.map(|(valve, port_bar)| run(valve, port_bar, &mut random));
     Campaign {
         name: "paper-flow-test".to_owned(),
         description: "Flow test of both valves, from Tables 2 and 5".to_owned(),
         sample_rate_hz: SAMPLE_RATE_HZ,
         synchronous: false,
         noise,
-        runs,
+        runs: runs.collect(),
     }
 }
 
-fn run(valve: Valve, port_pressure_bar: f64, gauss: &mut Gauss) -> Run {
+fn run(valve: Valve, port_pressure_bar: f64, random: &mut Pcg64) -> Run {
     let steps = (HIGHEST_A / STEP_A).round();
     let samples = ((steps + 1.0) * HOLD_S * SAMPLE_RATE_HZ) as usize;
     let time_s: Vec<f64> = (0..samples)
@@ -118,7 +76,8 @@ fn run(valve: Valve, port_pressure_bar: f64, gauss: &mut Gauss) -> Run {
         .collect();
     let current_a: Vec<f64> = time_s.iter().map(|time_s| staircase_a(*time_s)).collect();
     let flow_lpm = current_a.iter().map(|current_a| {
-        measured_lpm(valve, *current_a, port_pressure_bar) + FLOW_SIGMA_LPM * gauss.next()
+        let noise: f64 = random.sample(StandardNormal);
+        measured_lpm(valve, *current_a, port_pressure_bar) + FLOW_SIGMA_LPM * noise
     });
     let mut channels = [const { None }; 4];
     channels[Channel::Flow.index()] = Some(flow_lpm.collect());
@@ -149,9 +108,8 @@ fn staircase_a(time_s: f64) -> f64 {
 
 /// Flow of the measured valve, l/min, positive into the cylinder.
 fn measured_lpm(valve: Valve, current_a: f64, port_pressure_bar: f64) -> f64 {
-    let deviation = deviation(valve);
-    let flow_lpm = (1.0 + deviation.flow_scale)
-        * interpolate(table_2(valve), current_a - deviation.threshold_shift_a);
+    let at_a = current_a - threshold_shift_a(valve);
+    let flow_lpm = (1.0 + flow_scale(valve)) * interpolate(table_2(valve), at_a);
     match valve {
         Valve::Lift => flow_lpm,
         Valve::Lowering => -flow_lpm * (port_pressure_bar / LOWER_DROP_BAR).sqrt(),
@@ -169,50 +127,21 @@ fn interpolate(table: &[(f64, f64)], at: f64) -> f64 {
     }
 }
 
-/// Reproducible normal deviates: a 64-bit linear congruential generator (Knuth's constants) and Box-Muller.
-struct Gauss(u64);
-
-impl Gauss {
-    fn new() -> Self {
-        Self(20_200_850)
-    }
-
-    fn uniform(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn next(&mut self) -> f64 {
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
-    }
+#[test]
+fn the_measured_valve_is_table_5_s() {
+    assert!((measured_lpm(Valve::Lift, 3.5, 70.0) - 37.27).abs() < 1e-9);
+    assert!((measured_lpm(Valve::Lowering, 3.5, 15.0) + 56.74).abs() < 1e-9);
+    assert_eq!(measured_lpm(Valve::Lowering, 1.25, 15.0), 0.0);
+    assert!(measured_lpm(Valve::Lowering, 1.26, 15.0) < 0.0);
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_measured_valve_is_table_5_s() {
-        assert!((measured_lpm(Valve::Lift, 3.5, 70.0) - 37.27).abs() < 1e-9);
-        assert!((measured_lpm(Valve::Lowering, 3.5, 15.0) + 56.74).abs() < 1e-9);
-        assert_eq!(measured_lpm(Valve::Lowering, 1.25, 15.0), 0.0);
-        assert!(measured_lpm(Valve::Lowering, 1.26, 15.0) < 0.0);
-    }
-
-    #[test]
-    fn the_log_is_a_staircase_with_the_noise_it_declares() {
-        let campaign = campaign();
-        let run = &campaign.runs[0];
-        assert_eq!(run.lift_current_a.first(), Some(&0.0));
-        assert!((run.lift_current_a.last().unwrap() - 3.5).abs() < 1e-9);
-        let flow = run.channel(Channel::Flow).unwrap();
-        let still: Vec<f64> = flow[..500].to_vec();
-        let sigma =
-            (still.iter().map(|value| value * value).sum::<f64>() / still.len() as f64).sqrt();
-        assert!((sigma / FLOW_SIGMA_LPM - 1.0).abs() < 0.1, "{sigma}");
-    }
+#[test]
+fn the_log_is_a_staircase_with_the_noise_it_declares() {
+    let campaign = campaign();
+    let run = &campaign.runs[0];
+    assert_eq!(run.lift_current_a.first(), Some(&0.0));
+    assert!((run.lift_current_a.last().unwrap() - 3.5).abs() < 1e-9);
+    let still = &run.channel(Channel::Flow).unwrap()[..500];
+    let sigma = (still.iter().map(|value| value * value).sum::<f64>() / still.len() as f64).sqrt();
+    assert!((sigma / FLOW_SIGMA_LPM - 1.0).abs() < 0.1, "{sigma}");
 }

@@ -2,10 +2,9 @@
 
 use std::ffi::c_int;
 
-use super::types::{FMI2_FALSE, Fmi2Boolean};
-use crate::abi::guard::call;
-use crate::abi::instance::{Fault, Instance, Phase};
-use crate::abi::types::{Handle, Status, Text};
+use super::guard::call;
+use super::instance::{Fault, Instance, Phase};
+use super::types::{Boolean, FALSE, Handle, Status, Text};
 
 /// `fmi2StatusKind` of the time up to which the last step was taken.
 const LAST_SUCCESSFUL_TIME: c_int = 2;
@@ -21,7 +20,7 @@ pub unsafe extern "C" fn fmi2DoStep(
     component: Handle,
     current_communication_point: f64,
     communication_step_size: f64,
-    _no_set_state_prior_to_current_point: Fmi2Boolean,
+    _no_set_state_prior_to_current_point: Boolean,
 ) -> Status {
     let step = |instance: &mut Instance| {
         instance.only_in(&[Phase::Stepping])?;
@@ -118,9 +117,9 @@ pub unsafe extern "C" fn fmi2GetIntegerStatus(
 pub unsafe extern "C" fn fmi2GetBooleanStatus(
     component: Handle,
     kind: c_int,
-    value: *mut Fmi2Boolean,
+    value: *mut Boolean,
 ) -> Status {
-    let ends = |_: &Instance| (kind == TERMINATED).then_some(FMI2_FALSE);
+    let ends = |_: &Instance| (kind == TERMINATED).then_some(FALSE);
     // SAFETY: the importer gives null or an instance, and null or a place for the answer.
     unsafe { answer(component, "fmi2GetBooleanStatus", value, ends) }
 }
