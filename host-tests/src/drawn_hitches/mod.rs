@@ -10,6 +10,7 @@
 
 pub mod draw;
 pub mod figures;
+pub mod plain;
 pub mod session;
 pub mod shortest;
 pub mod teaching;

@@ -13,9 +13,9 @@ use super::shortest::{ARRIVED_DEG, Shortest};
 use crate::second_rig::driven_hitch::DrivenHitch;
 
 /// From the step of the lever: three times the shortest time, and this, s.
-const WATCHED_S: f64 = 4.0;
+pub(super) const WATCHED_S: f64 = 4.0;
 /// After the last move, s.
-const MINUTE_S: f64 = 60.0;
+pub(super) const MINUTE_S: f64 = 60.0;
 /// One sigma of the pressures, bar.
 const PRESSURE_NOISE_BAR: f64 = 0.15;
 
@@ -204,7 +204,12 @@ pub fn drive_watched(
         .collect()
 }
 
-fn judge(from_deg: f64, to_deg: f64, instants: &[Instant], shortest: Shortest) -> MoveFigures {
+pub(super) fn judge(
+    from_deg: f64,
+    to_deg: f64,
+    instants: &[Instant],
+    shortest: Shortest,
+) -> MoveFigures {
     let way = (to_deg - from_deg).signum();
     let beyond = |instant: &Instant| (instant.rocker_deg - to_deg) * way;
     let away = |instant: &Instant| beyond(instant).abs() > ARRIVED_DEG;

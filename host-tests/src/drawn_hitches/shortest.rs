@@ -12,7 +12,7 @@ const SWING_S: f64 = 0.6;
 /// Within this of the set point a move has arrived, degree.
 pub const ARRIVED_DEG: f64 = 0.5;
 /// Current at which both valves are fully open, A.
-const SATURATION_A: [f64; 2] = [3.252, 3.119];
+pub(super) const SATURATION_A: [f64; 2] = [3.252, 3.119];
 
 /// Figures of the shortest manoeuvre.
 #[derive(Debug, Clone, Copy)]

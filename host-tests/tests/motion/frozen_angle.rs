@@ -75,3 +75,13 @@ fn no_fault_of_a_healthy_hitch_that_stands_oscillates_or_lands() {
     );
     assert!(faults.is_empty(), "{faults:?}");
 }
+
+/// A lever that is raised at once while the lowering hitch stands on the ground: the ground is no reason to stay there.
+#[test]
+fn a_hitch_on_the_ground_follows_a_raised_lever() {
+    let calibration = Calibration::nominal().validate().unwrap();
+    for seed in [77_000_087, 77_000_274, 77_000_669] {
+        let fault = first_fault(seed, &calibration);
+        assert!(fault.is_none(), "{fault:?}");
+    }
+}

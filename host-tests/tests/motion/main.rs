@@ -20,3 +20,4 @@ mod start_up;
 mod teach;
 mod traces;
 mod wide_hysteresis;
+mod wrong_calibration;

@@ -8,13 +8,21 @@ use crate::motion::position::MoveReason;
 use crate::operator::mode::Mode;
 use crate::sensing::sensors::Sensed;
 use crate::sequencing::stall_detector::is_at_end_of_travel;
-use crate::valve::phase::Phase;
+use crate::valve::phase::{Direction, Phase};
 
 impl Control {
     /// The hitch stands still and may be in contact with the ground: accepts its position as the set point.
     pub fn accept_ground_contact(&mut self) {
         self.stop();
-        self.position.accept();
+        self.accept_obstacle(Direction::Lower);
+    }
+
+    /// Something is in the way of the hitch: accepts its position as the set point. A lever that was moved to the other side
+    /// meanwhile is followed.
+    fn accept_obstacle(&mut self, direction: Direction) {
+        if direction.sign((self.target.1 - self.motion.position()).0) > 0 {
+            self.position.accept();
+        }
     }
 
     /// A move begins. Counts it as a correction if the lever did not demand it. Only a move to a set point is used for
@@ -68,7 +76,7 @@ impl Control {
         self.stop();
         let lifts = phase.speed() > MicrometrePerSecond::ZERO;
         if is_at_end_of_travel(lifts, sensed, &self.calibration) {
-            self.position.accept();
+            self.accept_obstacle(Direction::of(phase.speed().0));
             return Ok(());
         }
         self.stall.start_retry_delay(&self.calibration.saturation)
