@@ -67,7 +67,7 @@ const CRATES: [Layers; 9] = [
     Layers {
         sources: "model/effects/src",
         order: &[
-            &["expression"],
+            &["expression", "order"],
             &["described", "catalogue"],
             &["term_effect"],
         ],
@@ -100,10 +100,11 @@ const CRATES: [Layers; 9] = [
     Layers {
         sources: "workbench/fmu/src",
         order: &[
-            &["location", "units", "variable"],
+            &["kind", "location", "units", "variable"],
             &["component"],
             &["plant", "controller"],
-            &["description", "content"],
+            &["description"],
+            &["content"],
             &["abi"],
         ],
     },

@@ -10,42 +10,11 @@ use uuid::Uuid;
 use crate::component::Component;
 use crate::controller::ControllerComponent;
 use crate::description::{self, About};
+use crate::kind::Kind;
 use crate::plant::PlantComponent;
 
 /// Space of the names whose ids are the units' checksums.
 const SPACE: Uuid = Uuid::from_u128(0x6d1f_4b52_9c1e_4c3a_8f57_1b0a_2e77_c9d4);
-
-/// What is simulated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// The plant of a model file.
-    Plant,
-    /// The firmware's controller with a calibration file.
-    Controller,
-}
-
-impl Kind {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Plant, Self::Controller];
-
-    /// Name of the library in a unit.
-    #[must_use]
-    pub const fn identifier(self) -> &'static str {
-        match self {
-            Self::Plant => "hitch_plant",
-            Self::Controller => "hitch_controller",
-        }
-    }
-
-    /// Name of the file in the `resources` folder.
-    #[must_use]
-    pub const fn file(self) -> &'static str {
-        match self {
-            Self::Plant => "model.toml",
-            Self::Controller => "calibration.toml",
-        }
-    }
-}
 
 /// A component with the checksum and the description of its unit.
 pub struct Content {

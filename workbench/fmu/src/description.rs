@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use crate::content::Kind;
 use crate::controller;
+use crate::kind::Kind;
 use crate::units;
 use crate::variable::{Causality, Value, Variable};
 

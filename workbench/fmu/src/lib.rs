@@ -14,6 +14,7 @@ pub mod component;
 pub mod content;
 pub mod controller;
 pub mod description;
+pub mod kind;
 mod location;
 pub mod plant;
 mod units;

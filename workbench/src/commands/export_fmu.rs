@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use hitch_controller_host::calibration_file;
-use hitch_fmu::content::Kind;
+use hitch_fmu::kind::Kind;
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 

@@ -1,6 +1,7 @@
 //! The archive of a unit.
 
-use hitch_fmu::content::{Content, Kind};
+use hitch_fmu::content::Content;
+use hitch_fmu::kind::Kind;
 use hitch_input::source_file::SourceFile;
 
 use super::library::platform;

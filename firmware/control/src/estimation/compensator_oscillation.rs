@@ -38,7 +38,7 @@
 use hitch_quantities::units::{MicrometrePerSecond, Millisecond};
 
 use super::delayed_output::Pole;
-use super::spool_lag::MillisecondQ3;
+use super::millisecond_q3::MillisecondQ3;
 use crate::valve::phase::{Direction, Phase};
 
 /// State of the detection.

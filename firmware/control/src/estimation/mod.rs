@@ -6,6 +6,7 @@ pub mod delayed_output;
 pub mod free_fall;
 pub mod hysteresis_compensation;
 pub mod load;
+pub mod millisecond_q3;
 pub mod motion_observer;
 pub mod move_record;
 pub mod peak_velocity_ratio;

@@ -8,9 +8,10 @@
 //! ```
 
 use hitch_quantities::fixed::Divisor;
-use hitch_quantities::units::{MicroLitrePerSecond, Micrometre, Millisecond, SquareMillimetre};
+use hitch_quantities::units::{
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Millisecond, SquareMillimetre,
+};
 
-use super::motion_observer::MotionObserver;
 use crate::valve::drop_scale::DropScale;
 use crate::valve::phase::Direction;
 
@@ -62,10 +63,16 @@ impl MoveRecorder {
         self.direction
     }
 
-    /// One step. `rests`: the hitch rests, and its position is known. True once that was so for the settling time.
-    pub fn step(&mut self, rests: bool, motion: &MotionObserver) -> bool {
-        self.expected_nm = self.expected_nm.saturating_add(motion.model_speed().0);
-        self.sensitivity_nl = self.sensitivity_nl.saturating_add(motion.slope().0);
+    /// One step with the speed of the model and its slope over the current, for each ampere. `rests`: the hitch rests, and
+    /// its position is known. True once that was so for the settling time.
+    pub fn step(
+        &mut self,
+        rests: bool,
+        speed: MicrometrePerSecond,
+        slope: MicroLitrePerSecond,
+    ) -> bool {
+        self.expected_nm = self.expected_nm.saturating_add(speed.0);
+        self.sensitivity_nl = self.sensitivity_nl.saturating_add(slope.0);
         if rests {
             self.held = self.held.next();
         }

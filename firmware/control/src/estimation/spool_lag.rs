@@ -17,10 +17,9 @@
 
 use hitch_quantities::calibration::design_parameters::HydraulicParameters;
 use hitch_quantities::fixed::{Divisor, mul_div};
-use hitch_quantities::units::{
-    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, Millisecond,
-};
+use hitch_quantities::units::{MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Millisecond};
 
+use super::millisecond_q3::MillisecondQ3;
 use super::move_record::MoveRecord;
 
 /// Sum of squares at which the regression of a move is complete: 20 ms at full speed.
@@ -29,52 +28,6 @@ const COMPLETE_SUM: i32 = 400_000;
 const INITIAL_WEIGHT: i32 = 50_000;
 /// Largest weight of earlier moves: the oil temperature changes.
 const MAX_WEIGHT: i32 = 200_000;
-
-/// A time in milliseconds as a fixed-point number with three fractional bits (Q3).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct MillisecondQ3(pub i32);
-
-impl MillisecondQ3 {
-    /// Units in a second.
-    pub const IN_SECOND: Divisor = Divisor::at_least_one(8_000);
-
-    /// The time rounded to milliseconds, at least one, as a divisor.
-    #[must_use]
-    pub const fn divisor(self) -> Divisor {
-        Divisor::at_least_one(self.0.saturating_add(4) >> 3)
-    }
-
-    fn limited(self, limit: Self) -> Self {
-        self.max(Self(limit.0.saturating_neg())).min(limit)
-    }
-}
-
-impl From<Microsecond> for MillisecondQ3 {
-    fn from(time: Microsecond) -> Self {
-        Self(time.0 / 125)
-    }
-}
-
-impl From<Millisecond> for MillisecondQ3 {
-    fn from(time: Millisecond) -> Self {
-        // Milliseconds of a calibration are few.
-        Self(time.0 << 3)
-    }
-}
-
-impl core::ops::Sub for MillisecondQ3 {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self(self.0.saturating_sub(other.0))
-    }
-}
-
-impl core::ops::Add for MillisecondQ3 {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self(self.0.saturating_add(other.0))
-    }
-}
 
 /// Lags of lift and lowering valve in the calibration.
 #[must_use]

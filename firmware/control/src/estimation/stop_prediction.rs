@@ -3,7 +3,7 @@
 use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{Micrometre, MicrometrePerSecond};
 
-use super::spool_lag::MillisecondQ3;
+use super::millisecond_q3::MillisecondQ3;
 
 /// Predicted stop of the piston.
 #[derive(Clone, Copy, Debug)]

@@ -14,7 +14,7 @@
 use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{Micrometre, MicrometrePerSecond, Millisecond};
 
-use super::spool_lag::MillisecondQ3;
+use super::millisecond_q3::MillisecondQ3;
 
 /// Initial weight, (mm/s)^2: a delay of 8 ms is as likely as a position error of 0.18 mm from other causes.
 const INITIAL_WEIGHT: i32 = 500;

@@ -2,10 +2,7 @@
 
 use std::ffi::{CString, c_void};
 
-use super::types::{Status, Text};
-
-/// Writes a message: environment, instance, status, category, format as of `printf`, and its arguments.
-pub type FormatFunction = unsafe extern "C" fn(*mut c_void, Text, Status, Text, Text, ...);
+use super::types::{FormatFunction, Status};
 
 /// The importer's function for messages, with the pointer that is passed back to it.
 #[derive(Clone)]

@@ -2,8 +2,6 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
-use super::logger::FormatFunction;
-
 /// A unit's instance, as an importer holds it.
 pub type Handle = *mut c_void;
 /// A stored state, as an importer holds it.
@@ -38,6 +36,9 @@ pub type Boolean = c_int;
 pub const FALSE: Boolean = 0;
 /// `fmi2Type` of an instance for co-simulation.
 pub const CO_SIMULATION: c_int = 1;
+
+/// Writes a message: environment, instance, status, category, format as of `printf`, and its arguments.
+pub type FormatFunction = unsafe extern "C" fn(*mut c_void, Text, Status, Text, Text, ...);
 
 /// Functions of the importer.
 #[repr(C)]
