@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The models follow the reference manuals (RM0090, RM0440) and data sheets. Forbidden operations of the image are
-//! recorded as violations, and [`Chip::audit`] checks its initialisation. Time is counted in instructions of two cycles
+//! recorded as violations, and `audit::findings` checks its initialisation. Time is counted in instructions of two cycles
 //! each.
 
 mod adc;
