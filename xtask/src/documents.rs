@@ -1,4 +1,4 @@
-//! Documents: what is cited exists, and requirements and tests name each other.
+//! Documents: what is cited exists, things are where the table says, and requirements and tests name each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -8,6 +8,9 @@ use arm_build::workspace;
 
 /// The list of requirements, from the workspace's root.
 const REQUIREMENTS: &str = "docs/requirements.md";
+
+/// The page with the table that says where things are, from the workspace's root.
+const ARCHITECTURE: &str = "docs/ARCHITECTURE.md";
 
 /// Folders with sources and documents, from the workspace's root.
 const FOLDERS: [&str; 6] = [
@@ -55,6 +58,12 @@ pub fn check() -> Result<()> {
     let required = texts
         .get(&root.join(REQUIREMENTS))
         .with_context(|| format!("{REQUIREMENTS} is missing"))?;
+    let places = texts
+        .get(&root.join(ARCHITECTURE))
+        .with_context(|| format!("{ARCHITECTURE} is missing"))?;
+    wrong.extend(misplaced(places, |file| {
+        fs::read_to_string(root.join(file)).ok()
+    }));
     let sources = texts
         .iter()
         .filter(|(path, _)| path.extension().is_some_and(|end| end == "rs"))
@@ -95,6 +104,22 @@ fn unmatched<'a>(required: &'a str, sources: impl Iterator<Item = &'a str>) -> V
     untested.chain(unknown).collect()
 }
 
+/// Rows of the table of places whose file does not exist, or lacks the name. `read` gives the text of a file.
+fn misplaced(page: &str, read: impl Fn(&str) -> Option<String>) -> Vec<String> {
+    let table = page
+        .split("\n## ")
+        .find(|part| part.starts_with("Where is"));
+    let rows = table.into_iter().flat_map(|part| part.lines());
+    let quoted = rows.filter_map(|row| {
+        let mut cells = row.split('`').skip(1).step_by(2);
+        cells.next().zip(cells.next())
+    });
+    let wrong = quoted.filter(|(file, name)| !read(file).is_some_and(|text| text.contains(name)));
+    wrong
+        .map(|(file, name)| format!("{ARCHITECTURE}: there is no {name} in {file}"))
+        .collect()
+}
+
 /// The requirement ids in a text.
 fn ids(text: &str) -> BTreeSet<&str> {
     let is_part = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '-';
@@ -126,6 +151,27 @@ mod tests {
         assert!(wrong[0].contains(&b) && wrong[1].contains(&c), "{wrong:?}");
         let both = format!("// {a}, {b}");
         assert!(unmatched(&listed, [both.as_str()].into_iter()).is_empty());
+    }
+
+    #[test]
+    fn a_place_without_its_file_or_name_is_refused() {
+        let row = |file: &str, name: &str| format!("| what | `{file}` | `{name}` |\n");
+        let rows = [
+            row("a.rs", "fn a"),
+            row("a.rs", "fn b"),
+            row("b.rs", "fn a"),
+        ]
+        .concat();
+        let page = format!(
+            "# Page\n\n## Where is ...\n\n| where is | file | name |\n{rows}\n## Next\n{rows}"
+        );
+        let read = |file: &str| (file == "a.rs").then(|| "fn a() {}".to_owned());
+        let wrong = misplaced(&page, read);
+        assert_eq!(wrong.len(), 2, "{wrong:?}");
+        assert!(
+            wrong[0].contains("fn b") && wrong[1].contains("b.rs"),
+            "{wrong:?}"
+        );
     }
 
     #[test]

@@ -25,7 +25,7 @@ usage: cargo xtask <task> [--arm rustup|debian] [--timings]
   test [--only TEXT]
           set up what is missing, build the ARM images, run every test, say how many passed; or only the tests of the
           programs and modules with this text in their names, e.g. `motion teach`
-  check   formatting, the order of folders, types of the scripts, clippy and rustdoc, with warnings denied
+  check   formatting, the order of folders, circles of files, types of the scripts, clippy and rustdoc, with warnings denied
   ci      check, coverage, then test; mutants as well if HITCH_THOROUGH is set, else it names what they have not been run on
   arm     build the ARM images, say how large they are, and hold them to their budgets
   sizes   write down how large the images are and how deep their stacks get, in firmware/sizes.txt
