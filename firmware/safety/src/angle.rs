@@ -10,8 +10,7 @@ use super::samples::{SPAN, Samples};
 use crate::limits::Limits;
 
 /// The noise measure averages over this many samples: noise of +-0.8 degree is found in 18 ms, and that of a sensor
-/// with
-/// 0.1 degree, one sigma, is seven of its own sigmas below the limit.
+/// with 0.1 degree, one sigma, is seven of its own sigmas below the limit.
 const NOISE_SAMPLES: i32 = 16;
 
 /// What is wrong with the angle in this step.

@@ -29,21 +29,16 @@
 //!
 //! * The margin of the current covers a threshold offset and the hysteresis of coil and spool.
 //! * The lags cover slow spools, and loads on oil with air. A falling current reduces the required speed at once: no
-//!   spool
-//!   closes faster.
+//!   spool closes faster.
 //! * The lag of the angle sensor (`sensors.angle_lag`) is added to these. The measured recent speed already contains it.
 //! * Share and following speed cover a load that stands still behind an open valve. A braked load on soft oil
-//!   oscillates, and
-//!   stands still for up to 0.1 s at its reversals. A load that is lifted from the ground first moves by the spring of
-//!   the
-//!   ground, which looks like a start, and then waits for its pressure, which the pump raises by some 0.1 bar/ms. In
-//!   such a
-//!   standstill the valve curve, less the margin, predicted up to 12 mm for healthy machines, and the longest took 98
-//!   ms.
-//!   They also cover a light load behind the lowering valve, cold oil, a slow pump, and droop.
+//!   oscillates, and stands still for up to 0.1 s at its reversals. A load that is lifted from the ground first moves
+//!   by the spring of the ground, which looks like a start, and then waits for its pressure, which the pump raises by
+//!   some 0.1 bar/ms. In such a standstill the valve curve, less the margin, predicted up to 12 mm for healthy
+//!   machines, and the longest took 98 ms. They also cover a light load behind the lowering valve, cold oil, a slow
+//!   pump, and droop.
 //! * A hitch that stops within milliseconds is none of these: half of the recent measured speed is required. Its
-//!   average over
-//!   24 ms falls with a braked load.
+//!   average over 24 ms falls with a braked load.
 //! * The allowance covers noise and converter steps.
 //!
 //! So little or no travel is required of a creeping hitch, a correction or a sticking spool, and the allowance is

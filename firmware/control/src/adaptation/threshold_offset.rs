@@ -20,7 +20,7 @@ use hitch_quantities::units::{Micrometre, MilliAmp};
 use crate::estimation::move_record::MoveRecord;
 use crate::valve::phase::Direction;
 
-/// Furthest that a valve may be off: one that is correction off has to be taught.
+/// Furthest that a valve may be off: one that is further off has to be taught.
 const MAX_OFFSET: MilliAmp = MilliAmp(160);
 /// Initial offset of the lift valve. The curve is the mean of both branches of the hysteresis, of which one half
 /// usually is 60 mA. The calibrated closing curve compensates the most of it.

@@ -284,7 +284,7 @@ mod tests {
                         late: 0.0,
                     }
                     .identified_ms();
-                    // A third is record while spool and load still follow, the rest by the next moves.
+                    // A third is identified while spool and load still follow, the rest by the next moves.
                     for (lag_ms, share) in record.into_iter().zip([0.7, 0.7, 0.5]) {
                         let error_ms = (lag_ms - slower_ms).abs();
                         assert!(

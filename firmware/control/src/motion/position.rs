@@ -406,8 +406,8 @@ mod tests {
             assert_eq!(limit_approach(&mut position, speed), speed, "under way");
         }
         let slow = parameters.creep_speed;
-        for (reference_set_point, given) in [(end, end), (fast, end), (slow, slow), (fast, end)] {
-            assert_eq!(limit_approach(&mut position, reference_set_point), given);
+        for (demanded, given) in [(end, end), (fast, end), (slow, slow), (fast, end)] {
+            assert_eq!(limit_approach(&mut position, demanded), given);
         }
         position.follow(high, parameters.upper_limit, true, &parameters);
         assert_eq!(

@@ -6,7 +6,7 @@
 //!
 //! The curve of the lowering valve is kept for the smallest drop, 64 mbar, whatever drop its table was measured at: then a
 //! flow is brought to it by `8 / sqrt(dp)` alone, which is never more than one. `1 / sqrt(dp)` comes from a table over
-//! the leading bits of `dp`: with an even number of them shifted out, the exponent halves into a shift of the result.
+//! the leading bits of `dp`: `dp = m 4^k` with `m` of a fixed number of bits gives `1 / sqrt(dp) = 2^-k / sqrt(m)`.
 //! What depends on the reference alone is worked out once.
 
 use hitch_quantities::fixed::square_root;

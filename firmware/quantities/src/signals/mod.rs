@@ -151,7 +151,7 @@ pub enum State {
     Fault = 6,
     /// Both coils off until the operator opens the transport lock.
     TransportLock = 7,
-    /// Down with the lever at its bottom stop: both coils off, and where the hitch settles is nobody's fault.
+    /// Down with the lever at its bottom stop: both coils off, and no position of the hitch is a fault.
     Floating = 8,
     /// Finding thresholds and ends, as long as the button is held.
     Teaching = 9,

@@ -1,4 +1,4 @@
-//! ProfileLikelihood-likelihood bounds of a parameter.
+//! Profile-likelihood bounds of a parameter.
 //!
 //! The curvature of the cost at its minimum gives a confidence interval that holds where the plant is smooth. A spool
 //! that breaks loose, or a hitch that touches the ground, does so at a discrete sample: the cost is then piecewise

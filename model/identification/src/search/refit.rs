@@ -118,9 +118,7 @@ impl Refits<'_> {
         let is_near = |(cost, fit): &(f64, Fit)| {
             *cost <= near || (is_rough(&fit.estimate) && *cost <= near_if_rough)
         };
-        let near = coarse_fits
-            .iter()
-            .filter(|coarse_fits| is_near(coarse_fits));
+        let near = coarse_fits.iter().filter(|fit| is_near(fit));
         near.map(|(_, fit)| fit.estimate.clone()).collect()
     }
 
