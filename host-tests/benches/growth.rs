@@ -22,10 +22,10 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::explain;
 use hitch_plant::{AddedEffect, Dynamics, Effect, Model, Place};
-use host_tests::second_rig::test_stand::Family;
-use host_tests::simulated_lab::campaign_of;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
+use truth_rigs::second_rig::test_stand::Family;
+use truth_rigs::simulated_lab::campaign_of;
 
 /// Seed of all campaigns.
 const SEED: u64 = 1;

@@ -9,16 +9,16 @@
 
 use clap::Parser;
 use comfy_table::{Table, presets};
-use host_tests::hidden_effects::foreign::Adopted;
-use host_tests::hidden_effects::grade::{Graded, Posed};
-use host_tests::hidden_effects::starting_point;
-use host_tests::hidden_effects::tally::{BINS, Tally, quantile};
-use host_tests::hidden_effects::wrong_base::declared_within;
-use host_tests::second_rig::draw::{Kind, draw};
-use host_tests::second_rig::manoeuvres::Plan;
-use host_tests::second_rig::test_stand::Family;
-use host_tests::second_rig::wish_arguments::WishArguments;
 use indicatif::{ProgressBar, ProgressStyle};
+use truth_rigs::hidden_effects::foreign::Adopted;
+use truth_rigs::hidden_effects::grade::{Graded, Posed};
+use truth_rigs::hidden_effects::starting_point;
+use truth_rigs::hidden_effects::tally::{BINS, Tally, quantile};
+use truth_rigs::hidden_effects::wrong_base::declared_within;
+use truth_rigs::second_rig::draw::{Kind, draw};
+use truth_rigs::second_rig::manoeuvres::Plan;
+use truth_rigs::second_rig::test_stand::Family;
+use truth_rigs::second_rig::wish_arguments::WishArguments;
 
 /// Name of what answers, in tables.
 const NAME: &str = "hitch explain";

@@ -9,11 +9,11 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Parser;
-use host_tests::second_rig::campaign_writer::{truth, write};
-use host_tests::second_rig::draw::draw;
-use host_tests::second_rig::manoeuvres::Plan;
-use host_tests::second_rig::test_stand::Family;
-use host_tests::second_rig::wish_arguments::WishArguments;
+use truth_rigs::second_rig::campaign_writer::{truth, write};
+use truth_rigs::second_rig::draw::draw;
+use truth_rigs::second_rig::manoeuvres::Plan;
+use truth_rigs::second_rig::test_stand::Family;
+use truth_rigs::second_rig::wish_arguments::WishArguments;
 
 /// Draws a case of the second rig and writes its campaign.
 #[derive(Debug, Parser)]

@@ -9,12 +9,12 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Parser;
-use host_tests::second_rig::campaign_writer::write;
-use host_tests::second_rig::draw::draw;
-use host_tests::second_rig::manoeuvres::Plan;
-use host_tests::second_rig::test_stand::Family;
-use host_tests::second_rig::wish_arguments::WishArguments;
 use rayon::prelude::*;
+use truth_rigs::second_rig::campaign_writer::write;
+use truth_rigs::second_rig::draw::draw;
+use truth_rigs::second_rig::manoeuvres::Plan;
+use truth_rigs::second_rig::test_stand::Family;
+use truth_rigs::second_rig::wish_arguments::WishArguments;
 
 /// Draws a fleet of machines and writes their campaigns.
 #[derive(Debug, Parser)]

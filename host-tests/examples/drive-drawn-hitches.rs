@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Parser;
 use hitch_quantities::{Calibration, ValidCalibration};
-use host_tests::drawn_hitches::draw::{Drawn, draw};
-use host_tests::drawn_hitches::figures::{table, worst};
-use host_tests::drawn_hitches::session::{MoveFigures, drive, drive_watched};
-use host_tests::second_rig::physics::SpoolMotion;
 use rayon::prelude::*;
+use truth_rigs::drawn_hitches::draw::{Drawn, draw};
+use truth_rigs::drawn_hitches::figures::{table, worst};
+use truth_rigs::drawn_hitches::session::{MoveFigures, drive, drive_watched};
+use truth_rigs::second_rig::physics::SpoolMotion;
 
 /// Arguments.
 #[derive(Parser)]

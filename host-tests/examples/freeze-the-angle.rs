@@ -2,10 +2,10 @@
 
 use clap::Parser;
 use hitch_quantities::Calibration;
-use host_tests::frozen_angle::freeze::{Case, Cost, Kind};
-use host_tests::frozen_angle::healthy::{FalseTrip, MACHINE_MS, first_fault, first_fault_watched};
-use host_tests::frozen_angle::quantiles::quantiles_deg;
 use rayon::prelude::*;
+use truth_rigs::frozen_angle::freeze::{Case, Cost, Kind};
+use truth_rigs::frozen_angle::healthy::{FalseTrip, MACHINE_MS, first_fault, first_fault_watched};
+use truth_rigs::frozen_angle::quantiles::quantiles_deg;
 
 /// Arguments.
 #[derive(Parser)]

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Parser;
-use host_tests::category_three::files::write;
+use truth_rigs::category_three::files::write;
 
 /// Writes the data sheets and logs of a hitch of category III.
 #[derive(Debug, Parser)]

@@ -7,9 +7,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use board_emulator::scenarios::{ALL, Scenario, Setup};
+use board_emulator::{Image, Layout};
 use clap::Parser;
-use host_tests::board::scenarios::{ALL, Scenario, Setup};
-use host_tests::board::{Image, Layout};
 
 /// Runs scenarios on an image as it is flashed.
 #[derive(Debug, Parser)]

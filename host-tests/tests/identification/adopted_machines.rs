@@ -1,9 +1,9 @@
 //! Machines with structures of their own, adopted from a data sheet that is off in every constant.
 
-use host_tests::hidden_effects::foreign::Adopted;
-use host_tests::second_rig::manoeuvres::Plan;
-use host_tests::second_rig::test_stand::Family;
 use host_tests::seeds::cases;
+use truth_rigs::hidden_effects::foreign::Adopted;
+use truth_rigs::second_rig::manoeuvres::Plan;
+use truth_rigs::second_rig::test_stand::Family;
 
 /// Seeds of machines, by day and by night. In 101 one run ends just above the ground, so that the cost steps with the ground's
 /// height; in 109 the error that remains at first speaks against the compensator's lag, which is there.

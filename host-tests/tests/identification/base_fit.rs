@@ -14,15 +14,15 @@ use hitch_identification::explanation::explain::fit_base;
 use hitch_model_file::Valve;
 use hitch_plant::units::lpm_from_m3_s;
 use hitch_plant::{Constants, Model, ValveCurve};
-use host_tests::hidden_effects::starting_point;
-use host_tests::second_rig::campaign_writer::campaign;
-use host_tests::second_rig::draw::{Kind, Wish, draw};
-use host_tests::second_rig::hidden::Fidelity;
-use host_tests::second_rig::hideable::find;
-use host_tests::second_rig::manoeuvres::Plan;
-use host_tests::second_rig::test_stand::Family;
 use host_tests::seeds::{cases, seeds};
 use host_tests::short_moves::few_runs;
+use truth_rigs::hidden_effects::starting_point;
+use truth_rigs::second_rig::campaign_writer::campaign;
+use truth_rigs::second_rig::draw::{Kind, Wish, draw};
+use truth_rigs::second_rig::hidden::Fidelity;
+use truth_rigs::second_rig::hideable::find;
+use truth_rigs::second_rig::manoeuvres::Plan;
+use truth_rigs::second_rig::test_stand::Family;
 
 /// Largest error of a fitted model, sigma: noise.
 const NOISE: f64 = 1.1;

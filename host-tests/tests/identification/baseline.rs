@@ -16,13 +16,13 @@ use hitch_identification::explanation::explain::{
 use hitch_identification::explanation::starting_point::StartingPoint;
 use hitch_identification::search::options::{Accuracy, Options};
 use hitch_plant::Model;
-use host_tests::hidden_effects::starting_point;
-use host_tests::hidden_effects::wrong_base::declared;
-use host_tests::second_rig::campaign_writer::campaign;
-use host_tests::second_rig::draw::{Case, Kind, Wish, draw};
-use host_tests::second_rig::foreign::{Foreign, draw_foreign};
-use host_tests::second_rig::manoeuvres::Plan;
-use host_tests::second_rig::test_stand::Family;
+use truth_rigs::hidden_effects::starting_point;
+use truth_rigs::hidden_effects::wrong_base::declared;
+use truth_rigs::second_rig::campaign_writer::campaign;
+use truth_rigs::second_rig::draw::{Case, Kind, Wish, draw};
+use truth_rigs::second_rig::foreign::{Foreign, draw_foreign};
+use truth_rigs::second_rig::manoeuvres::Plan;
+use truth_rigs::second_rig::test_stand::Family;
 
 /// A machine with a leak, backlash, check-valve losses, ground and a wrong angle gain that the nominal model does not
 /// have. Its lowering valve then passes 5.74 % more.

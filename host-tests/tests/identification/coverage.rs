@@ -12,10 +12,10 @@ use hitch_identification::search::single_effects::try_effects;
 use hitch_plant::{AddedEffect, Dynamics, Effect, Model};
 use host_tests::seeds::{cases, seeds};
 use host_tests::short_moves::few_runs;
-use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
+use truth_rigs::simulated_lab::campaign;
 
 /// Default number of seeds of an effect.
 const FEW_SEEDS: u64 = 1;

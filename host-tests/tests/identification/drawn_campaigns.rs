@@ -9,12 +9,12 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain::{Explanation, explain_with};
 use hitch_identification::search::options::Options;
-use host_tests::hidden_effects::starting_point;
-use host_tests::second_rig::campaign_writer::campaign;
-use host_tests::second_rig::draw::{Kind, Wish, draw};
-use host_tests::second_rig::manoeuvres::Plan;
-use host_tests::second_rig::test_stand::Family;
 use host_tests::seeds::cases;
+use truth_rigs::hidden_effects::starting_point;
+use truth_rigs::second_rig::campaign_writer::campaign;
+use truth_rigs::second_rig::draw::{Kind, Wish, draw};
+use truth_rigs::second_rig::manoeuvres::Plan;
+use truth_rigs::second_rig::test_stand::Family;
 
 /// First seed of the drawn campaigns.
 const SEED: u64 = 9001;

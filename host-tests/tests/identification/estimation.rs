@@ -15,10 +15,10 @@ use hitch_identification::selection::evidence::{
     detectability, log_odds, shares, variance_inflation,
 };
 use hitch_plant::{AddedEffect, Channel, Model};
-use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
+use truth_rigs::simulated_lab::campaign;
 
 /// Seed of the rig's noise and of every random series.
 const SEED: u64 = 20_261_125;

@@ -7,17 +7,17 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, explain};
 use hitch_plant::Effect;
-use host_tests::hidden_effects::explaining::answer;
-use host_tests::hidden_effects::grade::{Graded, Posed};
-use host_tests::hidden_effects::starting_point;
-use host_tests::second_rig::campaign_writer::{campaign, planned_runs, write};
-use host_tests::second_rig::draw::{Case, Kind, Wish, draw};
-use host_tests::second_rig::hidden::Fidelity;
-use host_tests::second_rig::hideable::find;
-use host_tests::second_rig::manoeuvres::Plan;
-use host_tests::second_rig::test_stand::Family;
 use host_tests::seeds::cases;
 use host_tests::short_moves::{few_runs, short_moves};
+use truth_rigs::hidden_effects::explaining::answer;
+use truth_rigs::hidden_effects::grade::{Graded, Posed};
+use truth_rigs::hidden_effects::starting_point;
+use truth_rigs::second_rig::campaign_writer::{campaign, planned_runs, write};
+use truth_rigs::second_rig::draw::{Case, Kind, Wish, draw};
+use truth_rigs::second_rig::hidden::Fidelity;
+use truth_rigs::second_rig::hideable::find;
+use truth_rigs::second_rig::manoeuvres::Plan;
+use truth_rigs::second_rig::test_stand::Family;
 
 /// Seed, hidden effects, faithful or structured form, good or rough instruments.
 type Question = (u64, &'static str, Fidelity, bool);

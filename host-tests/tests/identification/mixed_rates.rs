@@ -9,11 +9,11 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
 use hitch_plant::simulation::simulate;
 use hitch_plant::{Channel, Currents, HitchRig, Model, Rig};
-use host_tests::category_three::compressed_mdf::{Group, bytes};
-use host_tests::second_rig::manoeuvres::{Manoeuvre, Plan, Stand, runs};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
+use truth_rigs::category_three::compressed_mdf::{Group, bytes};
+use truth_rigs::second_rig::manoeuvres::{Manoeuvre, Plan, Stand, runs};
 
 /// Step of the simulated truth, s.
 const STEP_S: f64 = 1e-3;

@@ -20,8 +20,8 @@ use hitch_identification::explanation::explain::{Explanation, ExplanationStep, V
 use hitch_identification::selection::candidate::weigh;
 use hitch_identification::selection::evidence::DISTINGUISHABLE;
 use hitch_plant::{AddedEffect, Currents};
-use host_tests::lab::Lab;
-use host_tests::second_rig::test_stand::{Family, SAMPLE_RATE_HZ};
+use truth_rigs::lab::Lab;
+use truth_rigs::second_rig::test_stand::{Family, SAMPLE_RATE_HZ};
 
 const ALL: [bool; 4] = [true; 4];
 const NO_PUMP_SENSOR: [bool; 4] = [false, true, true, true];

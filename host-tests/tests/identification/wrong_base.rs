@@ -7,14 +7,14 @@ use hitch_identification::explanation::diagnosis::diagnose;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain, fit_base};
 use hitch_model_file::Valve;
 use hitch_plant::{Model, full_name};
-use host_tests::hidden_effects::starting_point;
-use host_tests::hidden_effects::wrong_base::declared;
-use host_tests::second_rig::campaign_writer::campaign;
-use host_tests::second_rig::draw::{Case, Kind, Wish, draw};
-use host_tests::second_rig::hidden::Fidelity;
-use host_tests::second_rig::hideable::find;
-use host_tests::second_rig::manoeuvres::Plan;
-use host_tests::second_rig::test_stand::Family;
+use truth_rigs::hidden_effects::starting_point;
+use truth_rigs::hidden_effects::wrong_base::declared;
+use truth_rigs::second_rig::campaign_writer::campaign;
+use truth_rigs::second_rig::draw::{Case, Kind, Wish, draw};
+use truth_rigs::second_rig::hidden::Fidelity;
+use truth_rigs::second_rig::hideable::find;
+use truth_rigs::second_rig::manoeuvres::Plan;
+use truth_rigs::second_rig::test_stand::Family;
 
 /// Largest error of an adequate model, sigma.
 const NOISE: f64 = 1.1;

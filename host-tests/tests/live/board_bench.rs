@@ -1,5 +1,5 @@
 //! The flashed images on models of the boards with the plant attached: each scenario of
-//! [`host_tests::board::scenarios`], in a separate process.
+//! [`board_emulator::scenarios`], in a separate process.
 //!
 //! They need images for ARM: `cargo xtask test` builds them and runs these tests. `HITCH_BOARD_MINUTES` makes the random
 //! operation longer, for a release.
@@ -122,7 +122,7 @@ fn instructions_from_samples_to_pulses_are_those_that_are_written_down() {
 
 #[test]
 fn no_scenario_is_left_out() {
-    for (name, _) in host_tests::board::scenarios::ALL {
+    for (name, _) in board_emulator::scenarios::ALL {
         let on_both = stm32f405::NAMES.contains(&name) && stm32g474::NAMES.contains(&name);
         assert!(on_both || nucleo_g474re::NAMES.contains(&name), "{name}");
     }

@@ -1,10 +1,10 @@
 //! Constants that an explanation corrects, in the page of `hitch serve`, without a browser.
 
-use host_tests::hidden_effects::wrong_base::declared;
 use host_tests::page_server::PageServer;
-use host_tests::second_rig::test_stand::Family;
 use serde_json::{Value, json};
 use tempfile::TempDir;
+use truth_rigs::hidden_effects::wrong_base::declared;
+use truth_rigs::second_rig::test_stand::Family;
 
 #[test]
 fn an_accepted_explanation_contains_the_corrected_constants() {

@@ -3,11 +3,11 @@
 //! `cargo run --release -p host-tests --example drive-drawn-hitches` runs many more.
 
 use hitch_quantities::Calibration;
-use host_tests::drawn_hitches::draw::{Drawn, draw};
-use host_tests::drawn_hitches::figures::{FIGURES, beyond, spread, table, worst};
-use host_tests::drawn_hitches::session::{MoveFigures, drive};
-use host_tests::second_rig::physics::SpoolMotion;
 use host_tests::seeds::cases;
+use truth_rigs::drawn_hitches::draw::{Drawn, draw};
+use truth_rigs::drawn_hitches::figures::{FIGURES, beyond, spread, table, worst};
+use truth_rigs::drawn_hitches::session::{MoveFigures, drive};
+use truth_rigs::second_rig::physics::SpoolMotion;
 
 /// How many machines of a kind by day, and with `HITCH_THOROUGH`.
 const FEW_MACHINES: usize = 15;

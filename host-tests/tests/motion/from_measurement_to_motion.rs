@@ -8,9 +8,9 @@ use hitch_plant::AddedEffect;
 use hitch_quantities::{Calibration, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
-use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
+use truth_rigs::simulated_lab::campaign;
 
 const SEED: u64 = 20;
 

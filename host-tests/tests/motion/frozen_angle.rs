@@ -3,10 +3,10 @@
 //! `cargo run --release -p host-tests --example freeze-the-angle` runs many more.
 
 use hitch_quantities::Calibration;
-use host_tests::frozen_angle::freeze::{Case, Cost};
-use host_tests::frozen_angle::healthy::{FalseTrip, first_fault};
-use host_tests::frozen_angle::quantiles::quantiles_deg;
 use rayon::prelude::*;
+use truth_rigs::frozen_angle::freeze::{Case, Cost};
+use truth_rigs::frozen_angle::healthy::{FalseTrip, first_fault};
+use truth_rigs::frozen_angle::quantiles::quantiles_deg;
 
 /// Seeds of the freezes.
 const FREEZES: std::ops::RangeInclusive<u64> = 1..=300;

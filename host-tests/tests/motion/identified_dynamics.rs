@@ -8,10 +8,10 @@ use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::{Calibration, Fault, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::{Move, OIL_TEMPERATURE_C, run};
-use host_tests::drawn_hitches::draw::{Drawn, Readings};
-use host_tests::drawn_hitches::session::drive;
-use host_tests::second_rig::driven_hitch::Conditions;
-use host_tests::second_rig::physics::{Physics, SpoolMotion};
+use truth_rigs::drawn_hitches::draw::{Drawn, Readings};
+use truth_rigs::drawn_hitches::session::drive;
+use truth_rigs::second_rig::driven_hitch::Conditions;
+use truth_rigs::second_rig::physics::{Physics, SpoolMotion};
 
 const LOADS_KG: [f64; 3] = [50.0, 150.0, 250.0];
 /// Ten moves: up and down, by 4 to 55 degrees.

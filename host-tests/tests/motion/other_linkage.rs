@@ -6,10 +6,10 @@ use hitch_controller::Controller;
 use hitch_quantities::units::{MilliBar, MilliDegree, MilliVolt};
 use hitch_quantities::{Calibration, Fault, Inputs, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
-use host_tests::category_three::files::write;
-use host_tests::category_three::machine::{BAR, STROKE_M, Wear, angle_deg};
-use host_tests::category_three::motion::{Motion, STEP_S};
 use host_tests::program::run;
+use truth_rigs::category_three::files::write;
+use truth_rigs::category_three::machine::{BAR, STROKE_M, Wear, angle_deg};
+use truth_rigs::category_three::motion::{Motion, STEP_S};
 
 /// Loads, kg.
 const LOADS_KG: [f64; 2] = [400.0, 2000.0];

@@ -1,11 +1,11 @@
 //! A power cut at any time neither destroys a calibration nor moves the hitch.
 
+use board_emulator::ecu_tool;
 use fastrand::Rng;
 use hitch_plant::Model;
 use hitch_protocols::storage::{CalibrationStore, Source};
 use hitch_quantities::{State, ValidCalibration};
 use hitch_workbench::ecu::{Bench, CutFlash, OnHost, delivered};
-use host_tests::ecu_tool;
 
 const LOAD_KG: f64 = 200.0;
 const OIL_TEMPERATURE_C: f64 = 40.0;

@@ -8,9 +8,9 @@ use hitch_quantities::units::{MilliDegree, Millisecond};
 use hitch_quantities::{Calibration, Fault, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::ClosedLoop;
-use host_tests::drawn_hitches::draw::draw;
-use host_tests::drawn_hitches::figures::{FIGURES, beyond, spread, table};
-use host_tests::drawn_hitches::session::{MoveFigures, drive as drive_drawn};
+use truth_rigs::drawn_hitches::draw::draw;
+use truth_rigs::drawn_hitches::figures::{FIGURES, beyond, spread, table};
+use truth_rigs::drawn_hitches::session::{MoveFigures, drive as drive_drawn};
 
 const LOAD_KG: f64 = 150.0;
 const OIL_C: f64 = 40.0;

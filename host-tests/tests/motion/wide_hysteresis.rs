@@ -5,12 +5,12 @@
 use std::sync::LazyLock;
 
 use hitch_quantities::{Calibration, ValidCalibration};
-use host_tests::drawn_hitches::draw::{Drawn, draw};
-use host_tests::drawn_hitches::figures::{FIGURES, beyond, spread, table, worst};
-use host_tests::drawn_hitches::session::{MoveFigures, drive};
-use host_tests::drawn_hitches::teaching::taught;
-use host_tests::second_rig::driven_hitch::Conditions;
 use host_tests::seeds::cases;
+use truth_rigs::drawn_hitches::draw::{Drawn, draw};
+use truth_rigs::drawn_hitches::figures::{FIGURES, beyond, spread, table, worst};
+use truth_rigs::drawn_hitches::session::{MoveFigures, drive};
+use truth_rigs::drawn_hitches::teaching::taught;
+use truth_rigs::second_rig::driven_hitch::Conditions;
 
 /// By day, and with `HITCH_THOROUGH`.
 const FEW_MACHINES: usize = 12;

@@ -1,15 +1,15 @@
-//! Untaught machines with a wrong calibration, against the plain reference design of [`host_tests::drawn_hitches::plain`].
+//! Untaught machines with a wrong calibration, against the plain reference design of [`truth_rigs::drawn_hitches::plain`].
 
 use hitch_quantities::calibration::valve_table::ValveTable;
 use hitch_quantities::units::{MicroLitrePerSecond, MilliAmp, SquareMillimetre};
 use hitch_quantities::{Calibration, ValidCalibration};
-use host_tests::drawn_hitches::draw::{Drawn, draw};
-use host_tests::drawn_hitches::session::{MoveFigures, drive};
-use host_tests::drawn_hitches::{figures, plain};
 use host_tests::seeds::{cases, seeds};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
+use truth_rigs::drawn_hitches::draw::{Drawn, draw};
+use truth_rigs::drawn_hitches::session::{MoveFigures, drive};
+use truth_rigs::drawn_hitches::{figures, plain};
 
 /// Machines by day, and with `HITCH_THOROUGH`.
 const FEW_MACHINES: u64 = 12;

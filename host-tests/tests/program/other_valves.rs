@@ -14,9 +14,9 @@ use hitch_plant::Dynamics;
 use hitch_workbench::closed_loop::{Scenario, first_missed};
 use hitch_workbench::explanation::Found;
 use hitch_workbench::rebuild::Rebuild;
-use host_tests::category_three::files::write;
 use host_tests::program::{hitch, run};
 use serde_json::Value;
+use truth_rigs::category_three::files::write;
 
 /// Largest current of the valves, A.
 const LARGEST_A: f64 = 1.6;

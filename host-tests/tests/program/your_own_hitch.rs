@@ -4,12 +4,12 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use host_tests::category_three::files::write;
-use host_tests::category_three::machine::{
+use host_tests::program::run;
+use truth_rigs::category_three::files::write;
+use truth_rigs::category_three::machine::{
     BAR, BORE_MM, BULK_MODULUS_PA, DEAD_WEIGHT_KG, MARGIN_PA, PUMP_FLOW_LPM, PUMP_RESPONSE_S,
     VISCOUS_N_S_M, WORN_LPM_BAR,
 };
-use host_tests::program::run;
 
 /// Command of the document that writes the files of the machine; the test calls its function.
 const GENERATOR: &str =

@@ -7,8 +7,8 @@ use hitch_protocols::can::Frame;
 use hitch_workbench::ecu::{Bench, Moment, Order};
 
 use super::setup::Setup;
-use crate::board::audit::findings;
-use crate::board::{Board, Conditions, Contents};
+use crate::audit::findings;
+use crate::{Board, Conditions, Contents};
 
 /// Time after power-up within which the ECU is ready, ms.
 pub const READY_MS: usize = 250;

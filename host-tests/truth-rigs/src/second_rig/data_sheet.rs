@@ -101,13 +101,13 @@ impl FlowTable {
 /// Table 2A of the paper.
 pub static LIFT_TABLE: LazyLock<FlowTable> = LazyLock::new(|| {
     FlowTable::read(include_str!(
-        "../../../model/paper/data/table2a_lift_valve.csv"
+        "../../../../model/paper/data/table2a_lift_valve.csv"
     ))
 });
 
 /// Table 2B of the paper.
 pub static LOWER_TABLE: LazyLock<FlowTable> = LazyLock::new(|| {
     FlowTable::read(include_str!(
-        "../../../model/paper/data/table2b_lower_valve.csv"
+        "../../../../model/paper/data/table2b_lower_valve.csv"
     ))
 });

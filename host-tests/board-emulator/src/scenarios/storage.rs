@@ -5,8 +5,8 @@ use hitch_ecu::Contact;
 
 use super::rig::{READY_MS, Rig};
 use super::setup::Setup;
-use crate::board::{Board, Contents, Extent, Snapshot};
 use crate::ecu_tool;
+use crate::{Board, Contents, Extent, Snapshot};
 
 /// The parameter that is stored, with two values that nothing else in RAM has. The second one is stricter: the board has
 /// no key.

@@ -5,7 +5,7 @@ use hitch_plant::Model;
 
 use super::rig::{READY_MS, Rig};
 use super::setup::Setup;
-use crate::board::{Board, Conditions, Part, Stop};
+use crate::{Board, Conditions, Part, Stop};
 
 /// Time within which the watchdog resets a dead program at the slowest oscillator, and the pins are low, ms.
 const WATCHDOG_MS: f64 = 20.0;

@@ -7,17 +7,17 @@ use std::collections::BTreeSet;
 
 use hitch_protocols::can::Frame;
 
-use crate::board::adc::Converter;
-use crate::board::can::Can;
-use crate::board::clocks::Clocks;
-use crate::board::conditions::Conditions;
-use crate::board::counters::{Counter, SlowClockCapture};
-use crate::board::enable_line::ENABLE;
-use crate::board::flash::{Contents, Effect, Flash};
-use crate::board::part::{DBGMCU, Part, Pin, Port, TIM2};
-use crate::board::pwm::{MOE, Pwm};
-use crate::board::registers::Registers;
-use crate::board::watchdog::Watchdog;
+use crate::adc::Converter;
+use crate::can::Can;
+use crate::clocks::Clocks;
+use crate::conditions::Conditions;
+use crate::counters::{Counter, SlowClockCapture};
+use crate::enable_line::ENABLE;
+use crate::flash::{Contents, Effect, Flash};
+use crate::part::{DBGMCU, Part, Pin, Port, TIM2};
+use crate::pwm::{MOE, Pwm};
+use crate::registers::Registers;
+use crate::watchdog::Watchdog;
 
 /// Clocks that an instruction takes: a mean over code that waits for flash now and then.
 const CLOCKS_PER_INSTRUCTION: f64 = 2.0;

@@ -9,7 +9,7 @@ use hitch_workbench::ecu::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES};
 
 use super::rig::Rig;
 use super::setup::Setup;
-use crate::board::{Conditions, Contents, Extent, Operation};
+use crate::{Conditions, Contents, Extent, Operation};
 
 /// Time after which the ECU has its address, ms.
 const CLAIMED_MS: usize = 600;

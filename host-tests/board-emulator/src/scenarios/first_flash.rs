@@ -7,7 +7,7 @@ use hitch_protocols::j1939::{Id, Pgn, Trouble};
 
 use super::rig::{READY_MS, Rig};
 use super::setup::Setup;
-use crate::board::Conditions;
+use crate::Conditions;
 
 /// Time within which all active codes are broadcast at least once after an address is claimed, ms.
 pub const REPORTED_MS: usize = 1_500;

@@ -1,7 +1,7 @@
 //! The state of the registers after a reset.
 
-use crate::board::part::{CAN, PWR, Part};
-use crate::board::registers::Registers;
+use crate::part::{CAN, PWR, Part};
+use crate::registers::Registers;
 
 /// Registers that aren't zero after a reset.
 pub fn reset_values(part: Part, flags: u32, registers: &mut Registers) {

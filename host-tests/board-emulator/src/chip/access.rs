@@ -1,8 +1,8 @@
 //! Reads and writes of the processor: registers, flash, and the RAM page with a stuck bit.
 
 use super::{CLOCKS_PER_INSTRUCTION, Chip, ECCD, ECCR, POLLING_NS, Stop};
-use crate::board::cpu::Bus;
-use crate::board::part::{CAN, FDCAN_RAM, FLASH, IWDG, PWR, Part, Pin, Port, TIM2};
+use crate::cpu::Bus;
+use crate::part::{CAN, FDCAN_RAM, FLASH, IWDG, PWR, Part, Pin, Port, TIM2};
 
 impl Chip {
     fn read_calibration(&mut self, address: u32, size: u32) -> u32 {

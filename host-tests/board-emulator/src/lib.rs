@@ -21,6 +21,7 @@ mod clocks;
 mod conditions;
 mod counters;
 mod cpu;
+pub mod ecu_tool;
 mod enable_line;
 mod flash;
 mod image;

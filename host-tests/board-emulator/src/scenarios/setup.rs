@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 
-use crate::board::image::Image;
-use crate::board::layout::Layout;
+use crate::image::Image;
+use crate::layout::Layout;
 
 /// The image of a board, and the emulator's library.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 
 use super::rig::{READY_MS, Rig};
 use super::setup::Setup;
-use crate::board::{Conditions, Operation, Stop};
+use crate::{Conditions, Operation, Stop};
 
 /// Frames of the address claim and the status show that the application runs.
 fn starts(setup: &Setup, conditions: Conditions) -> Result<f64> {

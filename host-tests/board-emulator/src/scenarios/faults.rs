@@ -6,7 +6,7 @@ use hitch_workbench::ecu::Order;
 
 use super::rig::Rig;
 use super::setup::Setup;
-use crate::board::ENABLE_READ_BACK;
+use crate::ENABLE_READ_BACK;
 
 /// A fault of wires, sensors and coils.
 #[derive(Clone, Copy)]
