@@ -4,12 +4,13 @@
 
 use std::time::{Duration, Instant};
 
+use board_emulator::ecu_tool;
 use hitch_ecu::link::{FRAME_BYTES, REPLY_BYTES, Reply};
 use hitch_protocols::storage::{CalibrationStore, Source};
 use hitch_quantities::ValidCalibration;
 use hitch_workbench::ecu::{Bench, CALIBRATION_BYTES, CutFlash, Emulator, Mode, delivered};
 use host_tests::seeds::cases;
-use host_tests::{ecu_day, ecu_tool, emulator};
+use host_tests::{ecu_day, emulator};
 
 const SEED: u64 = 20_260_101;
 /// Minutes of work; `HITCH_EMULATED_MINUTES` makes it longer or shorter.
