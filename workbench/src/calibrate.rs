@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use hitch_controller::Controller;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
 use hitch_plant::{Constants, Dynamics, Model, OrificeValve, Solenoid, Valve};
 use hitch_quantities::calibration::design_parameters::CurrentParameters;
@@ -175,14 +174,6 @@ fn current_regulation(solenoid: &Solenoid, current: &mut CurrentParameters) {
     current.integral = scaled(default.integral, resistance);
     let settling_ms = f64::from(default.settling_time.0) * (inductance / resistance).max(1.0);
     current.settling_time = Millisecond(settling_ms.ceil() as i32).min(LONGEST_SETTLING);
-}
-
-/// A controller for `model`, in the state after power-up.
-///
-/// # Errors
-/// See [`CalibrateError`].
-pub fn controller_for(model: &Model) -> Result<Controller, CalibrateError> {
-    calibrate(model, &Calibration::nominal()).map(Controller::new)
 }
 
 /// The linkage table over the model's range, and the travel limits inside it. The angles are those that the sensor shows

@@ -41,21 +41,6 @@ impl Implement {
         }
     }
 
-    /// Chisel plough of eleven tines with straight points, 900 kg; its dimensions are chosen.
-    #[must_use]
-    pub fn eleven_tine_chisel() -> Self {
-        Self {
-            draft: DraftCoefficients::CHISEL_PLOUGH,
-            width: 11.0,
-            length_m: 1.0,
-            mass_kg: 900.0,
-            centre_m: 1.8,
-            share_m: 1.8,
-            rake_deg: 60.0,
-            resistance_depth_ratio: 2.0 / 3.0,
-        }
-    }
-
     /// Draft in uniform soil, N, at a depth in m and a speed in m/s.
     #[must_use]
     pub fn draft_n(&self, texture: Texture, depth_m: f64, speed_m_s: f64) -> f64 {

@@ -13,7 +13,7 @@
 use crate::body::{AxleLoads, Body, BodyConstants, GRAVITY_M_S2, Ground, HitchLoad, Motion};
 use crate::implement::{Implement, Penetration};
 use crate::noise::Noise;
-use crate::sensors::draft_pins::{DraftPins, DraftPinsConstants, PinFault, PinReadings};
+use crate::sensors::draft_pins::{DraftPins, DraftPinsConstants, PinReadings};
 use crate::sensors::lagged::{Lagged, LaggedConstants};
 use crate::soil::{Soil, SoilPlan};
 use crate::terrain::Terrain;
@@ -186,12 +186,6 @@ impl Tractor {
             acceleration: lagged(&constants.acceleration, 0.0, 5),
             constants,
         }
-    }
-
-    /// Sets faults of the draft pins, left and right.
-    pub fn set_pin_faults(&mut self, left: PinFault, right: PinFault) {
-        self.pins.constants.left.fault = left;
-        self.pins.constants.right.fault = right;
     }
 
     /// Goes on by `dt_s`, s, limited to 1 µs and 0.1 s. Steps of 1 to 10 ms agree. Demands that are not numbers count as 0.

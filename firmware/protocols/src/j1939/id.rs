@@ -60,8 +60,6 @@ impl Pgn {
     pub const DM3: Self = Self(0xFECC);
     /// Software identification.
     pub const SOFTWARE_IDENTIFICATION: Self = Self(0xFEDA);
-    /// Clear active trouble codes.
-    pub const DM11: Self = Self(0xFED3);
     /// Proprietary A, addressed to one node.
     pub const PROPRIETARY_A: Self = Self(0xEF00);
 

@@ -38,10 +38,4 @@ impl<'a> Problem<'a> {
     pub fn on(self, experiment: &'a Experiment) -> Self {
         Self { experiment, ..self }
     }
-
-    /// Another model on the same data.
-    #[must_use]
-    pub fn with_model(self, model: &'a Model) -> Self {
-        Self { model, ..self }
-    }
 }

@@ -93,12 +93,6 @@ impl Candidate {
         plausibility(self.explained_share)
     }
 
-    /// Reduction of the cost, under the weights of the model without it.
-    #[must_use]
-    pub fn cost_reduction(&self) -> f64 {
-        self.likelihood_ratio * self.fit.variance() * self.inflation
-    }
-
     /// Fitted values of its parameters, in their units.
     #[must_use]
     pub fn values(&self) -> &[f64] {

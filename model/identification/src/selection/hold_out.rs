@@ -14,10 +14,6 @@ const FOLDS: usize = 4;
 /// Blocks of time per fold of a campaign of one run: each fold then has parts from both halves of the run.
 const BLOCKS: usize = 2;
 
-/// Ratio of the other fit's cost under the weights of this fit to that under its own, above which the two fits are
-/// compared under the same weights.
-const INCOMPARABLE: f64 = 1.5;
-
 /// Error of a model in held-out runs, in sigma.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldOut {
@@ -103,25 +99,6 @@ fn held_out_blocks(problem: Problem<'_>, fit: &Fit, fold: usize) -> Fit {
     let start = fit.estimate.clone().with_constants_held(true);
     let trained = refine_once(problem, &train, start);
     evaluate_weighted(problem, trained, fit.weights.of_samples(inside))
-}
-
-/// Held-out error of `fit` under the weights of `other`, if its own weights are so different that the two are not
-/// comparable: a sticking spool does not follow the noise of the currents.
-#[must_use]
-pub fn held_out_under_weights_of(problem: Problem<'_>, fit: &Fit, other: &Fit) -> Option<HeldOut> {
-    let (estimate, weights) = (other.estimate.clone(), fit.weights.clone());
-    let under_its = evaluate_weighted(problem, estimate, weights).cost;
-    let incomparable = under_its > INCOMPARABLE * other.cost;
-    incomparable.then(|| {
-        let weights = other.weights.clone();
-        held_out(
-            problem,
-            &Fit {
-                weights,
-                ..fit.clone()
-            },
-        )
-    })
 }
 
 /// The runs selected by `chosen`, with their weights and their estimate.
