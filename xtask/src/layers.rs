@@ -1,14 +1,17 @@
 //! The folders of a crate are layers: a folder may use only itself and lower ones.
 //!
 //! Cargo prevents cyclic dependencies of crates, but not of the folders in a crate. This check therefore reads the
-//! paths of `use` lines and of `crate::` paths in the sources: each has to lead to the same folder or to a lower one.
+//! paths in the sources: each has to lead to the same folder or to a lower one.
 //! Tests are exempt.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use arm_build::workspace;
+
+use crate::sources::{Source, module_of};
 
 /// The folders of a crate in their order.
 struct Layers {
@@ -201,117 +204,33 @@ impl Layers {
                 "`{own}` has no place in the order of xtask/src/layers.rs"
             )];
         };
-        paths(text)
-            .iter()
-            .filter_map(|path| {
-                let used = absolute(&module, path)?;
-                match self.height(&used) {
-                    Some(other) if other <= height => None,
-                    Some(_) => Some(format!("`{own}` uses `{used}`, which is above it: {path}")),
-                    None => Some(format!("{path}: name the module of `{used}`")),
-                }
-            })
-            .collect()
+        let source = match Source::parsed(text) {
+            Ok(source) => source,
+            Err(error) => return vec![error.to_string()],
+        };
+        let wrong = source.paths().filter_map(|path| {
+            let used = top(&module, path)?;
+            let path = path.join("::");
+            match self.height(&used) {
+                Some(other) if other <= height => None,
+                Some(_) => Some(format!("`{own}` uses `{used}`, which is above it: {path}")),
+                None => Some(format!("{path}: name the module of `{used}`")),
+            }
+        });
+        wrong.collect::<BTreeSet<_>>().into_iter().collect()
     }
-}
-
-/// The module of a file; `None` for the root of the crate.
-fn module_of(place: &Path) -> Vec<String> {
-    let mut module: Vec<String> = place
-        .with_extension("")
-        .iter()
-        .map(|part| part.to_string_lossy().into_owned())
-        .collect();
-    if module
-        .last()
-        .is_some_and(|last| ["lib", "main", "mod"].contains(&last.as_str()))
-    {
-        module.pop();
-    }
-    module
 }
 
 /// The top module of a path, as seen from a module; `None` for another crate, or for the root.
-fn absolute(module: &[String], path: &str) -> Option<String> {
-    let mut parts = path.split("::").peekable();
-    if parts.next_if_eq(&"crate").is_some() {
-        return parts.next().map(str::to_owned);
-    }
-    let mut base = module.to_vec();
-    let mut upwards = false;
-    while parts.next_if_eq(&"super").is_some() {
-        upwards = true;
-        base.pop();
-    }
-    match base.into_iter().next() {
-        Some(top) => upwards.then_some(top),
-        None => parts.next().map(str::to_owned),
-    }
-}
-
-/// The paths of a source that may lead to other modules of its crate: those that start with `crate` or `super`, with
-/// braces expanded. Comments and tests are ignored.
-fn paths(text: &str) -> Vec<String> {
-    let code: String = without_tests(text)
-        .lines()
-        .map(|line| line.split_once("//").map_or(line, |(code, _)| code))
-        .flat_map(|line| [line, "\n"])
-        .collect();
-    let mut found = Vec::new();
-    for root in ["crate::", "super::"] {
-        for (at, _) in code.match_indices(root) {
-            let before = code[..at].chars().next_back();
-            // Inside a path, or `$crate` of a macro.
-            if before.is_some_and(|sign| sign.is_alphanumeric() || "_:$".contains(sign)) {
-                continue;
-            }
-            found.extend(apart(&code[at..]));
-        }
-    }
-    found
-}
-
-/// The paths at the start of a text: `a::{b, c::d}` is `a::b` and `a::c::d`.
-fn apart(text: &str) -> Vec<String> {
-    let end = text
-        .find(|sign: char| !(sign.is_alphanumeric() || "_:".contains(sign)))
-        .unwrap_or(text.len());
-    let (path, rest) = text.split_at(end);
-    let Some(inner) = rest.strip_prefix('{').filter(|_| path.ends_with("::")) else {
-        return vec![path.trim_end_matches(':').to_owned()];
+fn top(module: &[String], path: &[String]) -> Option<String> {
+    let ups = path.iter().take_while(|name| *name == "super").count();
+    let inside = match path.first()?.as_str() {
+        "crate" => &path[1..],
+        "super" if module.len() > ups => return module.first().cloned(),
+        "super" => &path[ups..],
+        _ => return None,
     };
-    let mut depth = 0_usize;
-    let mut paths = Vec::new();
-    let mut start = 0;
-    for (at, sign) in inner.char_indices() {
-        match sign {
-            '{' => depth += 1,
-            '}' if depth > 0 => depth -= 1,
-            ',' | '}' if depth == 0 => {
-                let item = inner[start..at].trim();
-                if !item.is_empty() {
-                    paths.extend(apart(item).into_iter().map(|rest| format!("{path}{rest}")));
-                }
-                start = at + 1;
-                if sign == '}' {
-                    break;
-                }
-            }
-            _ => {}
-        }
-    }
-    paths
-}
-
-/// A source without its tests, which are a module at its end.
-fn without_tests(text: &str) -> &str {
-    let tests = text
-        .match_indices("#[cfg(test)]\nmod ")
-        .find(|(at, start)| {
-            let rest = &text[at + start.len()..];
-            rest.lines().next().is_some_and(|line| line.ends_with('{'))
-        });
-    tests.map_or(text, |(at, _)| &text[..at])
+    inside.first().cloned()
 }
 
 #[cfg(test)]
@@ -364,7 +283,7 @@ mod tests {
         assert_eq!(
             wrong(
                 "middle/a.rs",
-                "//! See [`crate::high`].\n/// [`super::super::high`]"
+                "//! See [`crate::high`].\n/// [`super::super::high`]\nfn f() {}"
             ),
             0
         );

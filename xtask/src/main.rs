@@ -8,6 +8,7 @@ mod documents;
 mod layers;
 mod mutants;
 mod scripts;
+mod sources;
 mod test;
 mod timings;
 
