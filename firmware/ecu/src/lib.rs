@@ -15,8 +15,9 @@
 //! * `can_port`: the bus by a driver of `embedded-can`,
 //! * `arbiter`, `status`: commands of an implement, and status to it,
 //! * `bus_watch`: troubles of the CAN controller,
-//! * `service`, `start_check`, `hardware`, `flow`, `pace`: storage, and the order and the time of it all,
-//! * `application`, and [`link`] with `machine` for one that runs in lock step with a host.
+//! * `service`, `start_check`, `hardware`, `task_sequence_monitor`, `tick_timer`: storage, and the order and the time of it
+//!   all,
+//! * `application`, and [`link`] with `hosted_ecu` for one that runs in lock step with a host.
 //!
 //! The images are in `src/bin`.
 #![no_std]

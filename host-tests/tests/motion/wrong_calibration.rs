@@ -90,7 +90,7 @@ fn compare(lag: Lag) -> Worse {
         .map(|seed| both(seed, lag))
         .collect();
     let mut worse = Worse::default();
-    for pair in &pairs {
+    for (seed, pair) in (SEED..).zip(&pairs) {
         let spread = |of| {
             pair.each_ref().map(|moves: &Vec<MoveFigures>| {
                 figures::spread(&moves.iter().collect::<Vec<_>>(), of)
@@ -102,7 +102,10 @@ fn compare(lag: Lag) -> Worse {
         worse.machines += 1;
         worse.slower += usize::from(time > 1.1 * plain_time);
         worse.overshooting += usize::from(over > plain_over.max(0.3));
-        worse.locked += usize::from(pair[0].iter().any(|moved| moved.fault.is_some()));
+        if let Some(fault) = pair[0].iter().find_map(|moved| moved.fault) {
+            println!("seed {seed} locks itself: {fault:?}");
+            worse.locked += 1;
+        }
         worse.hunting += usize::from(hunts(&pair[0]));
         worse.plain_hunting += usize::from(hunts(&pair[1]));
     }

@@ -9,6 +9,9 @@
 //!
 //! Reading validates everything that does not need a model, so that later code need not: every number is finite and
 //! plausible, time increases strictly, the currents have no gaps, and every run has at least one measured channel.
+//!
+//! A [`Campaign`] has [`Run`]s, each on a [`Bench`]; a [`CampaignError`] says where a file is wrong. What a log holds before
+//! it is mapped is a [`Survey`](survey::Survey).
 #![forbid(unsafe_code)]
 
 mod bus_log;

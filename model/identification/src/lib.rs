@@ -1,5 +1,8 @@
 //! Identification: finds the physical effects that a model lacks to explain a measured campaign.
 //!
+//! An [`Experiment`] is a prepared campaign; with a model it is a [`Problem`](data::problem::Problem). A [`Fit`] has the
+//! values of the free parameters and what they leave of the residuals. The answer is an [`Explanation`].
+//!
 //! Modules from the bottom layer to the top; none imports one above it:
 //!
 //! * [`data`]: prepares the logs of a campaign: an [`Experiment`];

@@ -1,5 +1,7 @@
 //! MAT files of MATLAB as values: level 5 (versions 5 to 7, of which 7 compresses its variables), and level 4.
 //!
+//! [`variables`] gives each variable by its name as a [`Value`].
+//!
 //! Source: MathWorks, "MAT-File Format".
 #![forbid(unsafe_code)]
 

@@ -14,6 +14,9 @@
 //! the [state](MechanicalState) of a run; [`hooks`], at which physical effects act; [`Model`]; the [`solver`] for the
 //! hydraulics at one instant and the motion of the piston; [`Plant`]; and the [`simulation`] of whole runs.
 //!
+//! One meets a [`Model`] with its [`Constants`], a [`Rig`], the currents that drive it, and the [`Trace`](simulation::Trace)
+//! of a run.
+//!
 //! Depends on no other crate of the project.
 #![forbid(unsafe_code)]
 
