@@ -19,7 +19,7 @@ struct Layers {
 }
 
 /// The checked crates; add an entry for a new one.
-const CRATES: [Layers; 9] = [
+const CRATES: [Layers; 10] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -98,6 +98,15 @@ const CRATES: [Layers; 9] = [
         ],
     },
     Layers {
+        sources: "workbench/closed-loop/src",
+        order: &[
+            &["valve_survey"],
+            &["closed_loop"],
+            &["calibrate"],
+            &["driven"],
+        ],
+    },
+    Layers {
         sources: "workbench/fmu/src",
         order: &[
             &["location", "units", "variable"],
@@ -125,15 +134,8 @@ const CRATES: [Layers; 9] = [
                 "web",
                 "words",
             ],
+            &["data_sheet", "demonstration", "base_fit", "next_command"],
             &[
-                "data_sheet",
-                "demonstration",
-                "valve_survey",
-                "base_fit",
-                "next_command",
-            ],
-            &[
-                "calibrate",
                 "closed_loop",
                 "comparison",
                 "explanation",

@@ -2,10 +2,10 @@
 //!
 //! Its equations of motion share no code with the model, from which its calibration follows.
 
+use hitch_closed_loop::calibrate::calibrate;
 use hitch_controller::Controller;
 use hitch_quantities::units::{MilliBar, MilliDegree, MilliVolt};
 use hitch_quantities::{Calibration, Fault, Inputs, ValidCalibration};
-use hitch_workbench::calibrate::calibrate;
 use host_tests::category_three::files::write;
 use host_tests::category_three::machine::{BAR, STROKE_M, Wear, angle_deg};
 use host_tests::category_three::motion::{Motion, STEP_S};
