@@ -44,6 +44,7 @@ const FILES: &[(&str, &str, &str)] = &[
         SCRIPT,
         include_str!("assets/plot_cursor.js"),
     ),
+    ("refused.js", SCRIPT, include_str!("assets/refused.js")),
     ("run_list.js", SCRIPT, include_str!("assets/run_list.js")),
     ("signals.js", SCRIPT, include_str!("assets/signals.js")),
     ("tabs.js", SCRIPT, include_str!("assets/tabs.js")),
@@ -72,6 +73,7 @@ const FILES: &[(&str, &str, &str)] = &[
         include_str!("assets/strip_chart.js"),
     ),
     ("valve_map.js", SCRIPT, include_str!("assets/valve_map.js")),
+    ("message.js", SCRIPT, include_str!("assets/message.js")),
     ("missing.js", SCRIPT, include_str!("assets/missing.js")),
     (
         "model_panel.js",
