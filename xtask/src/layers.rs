@@ -19,7 +19,7 @@ struct Layers {
 }
 
 /// The checked crates; add an entry for a new one.
-const CRATES: [Layers; 10] = [
+const CRATES: [Layers; 11] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -115,6 +115,10 @@ const CRATES: [Layers; 10] = [
             &["description", "content"],
             &["abi"],
         ],
+    },
+    Layers {
+        sources: "workbench/try-page/src",
+        order: &[&["bench"], &["abi"]],
     },
     Layers {
         sources: "workbench/src",

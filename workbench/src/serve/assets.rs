@@ -82,6 +82,17 @@ const FILES: &[(&str, &str, &str)] = &[
     ),
 ];
 
+/// The text of a script, a style sheet or, with an empty name, of the page itself; `None` for any other name. The plotting library
+/// and the colours are those of [`web`].
+#[must_use]
+pub fn page_text(name: &str) -> Option<&'static str> {
+    let own = FILES.iter().map(|(name, _, text)| (*name, *text));
+    let mut files = own.chain(web::MODULES);
+    files
+        .find(|(known, _)| *known == name)
+        .map(|(_, text)| text)
+}
+
 /// A file of the page by its name; the name of the page itself is empty.
 pub fn file(name: &str) -> Option<Response> {
     let answer = |kind: &'static str, text: Bytes| ([(header::CONTENT_TYPE, kind)], text);
