@@ -15,7 +15,7 @@ SUPPLY_V = 13.8
 
 
 class Coil:
-    """The coil of `workbench/src/closed_loop/coil.rs`."""
+    """The coil of `workbench/closed-loop/src/closed_loop/coil.rs`."""
 
     def __init__(self):
         self.current_a = 0.0

@@ -3,6 +3,7 @@
 //! The plant is the dynamic one, with noisy sensors. The script contains moves in both directions, reversals, both ends
 //! of the stroke, the button, and missing and implausible values of every signal.
 
+use hitch_closed_loop::Coil;
 use hitch_plant::{Currents, HitchRig, Plant, Rig};
 use hitch_quantities::signals::INPUT_BYTES;
 use hitch_quantities::units::{
@@ -10,7 +11,6 @@ use hitch_quantities::units::{
     MilliVolt,
 };
 use hitch_quantities::{Inputs, Outputs};
-use hitch_workbench::closed_loop::Coil;
 
 use crate::replay;
 use crate::trace::Trace;

@@ -1,11 +1,11 @@
 //! Teaching of the controller of a plant, as in service.
 
+use hitch_closed_loop::ClosedLoop;
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_effects::find;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::units::MilliDegreePerSecond;
 use hitch_quantities::{Calibration, Inputs, ValidCalibration};
-use hitch_workbench::closed_loop::ClosedLoop;
 
 /// The calibration of an untaught machine.
 pub fn nominal() -> ValidCalibration {

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use hitch_closed_loop::driven::MachineError;
 use hitch_input::input_error::InputError;
 
 /// The reason why a command stopped. Every message is one line: what, where, suggested correction.
@@ -29,6 +30,15 @@ pub enum Error {
     /// Any failure that is not caused by an input.
     #[error("{0}")]
     Failed(String),
+}
+
+impl From<MachineError> for Error {
+    fn from(error: MachineError) -> Self {
+        match error {
+            MachineError::NoLinkage(_) => Self::Failed(error.to_string()),
+            MachineError::NoCalibration { .. } => Self::Usage(error.to_string()),
+        }
+    }
 }
 
 impl Error {

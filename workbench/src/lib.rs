@@ -4,7 +4,6 @@
 pub mod archive;
 pub mod base_fit;
 pub mod baseline_arg;
-pub mod calibrate;
 pub mod cli;
 pub mod closed_loop;
 pub mod commands;
@@ -36,7 +35,6 @@ pub mod status_line;
 pub mod text;
 pub mod tolerance_args;
 pub mod tuning;
-pub mod valve_survey;
 pub mod web;
 pub mod words;
 pub mod xcp_tool;

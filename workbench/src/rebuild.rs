@@ -3,11 +3,13 @@
 use hitch_plant::Model;
 use hitch_quantities::{Calibration, ValidCalibration};
 
-use crate::calibrate::calibrate;
-use crate::closed_loop::{self, LoopRun, MoveResult, Scenario, Summary, with_dynamics};
+use crate::closed_loop::{self, LoopRun, MoveResult, Scenario, Summary};
 use crate::error::Error;
 use crate::explanation::Found;
 use crate::text::{Table, known};
+use hitch_closed_loop::calibrate::calibrate;
+use hitch_closed_loop::driven::MachineError;
+use hitch_closed_loop::with_dynamics;
 
 /// The same moves of the same rig under the valve map of the initial model and under the rebuilt one.
 #[derive(Debug, Clone)]
@@ -39,7 +41,7 @@ impl Rebuild {
     /// If the firmware rejects the map of one of the models, or the identified one has no linkage.
     pub fn new(found: &Found, scenario: Scenario) -> Result<Self, Error> {
         let identified = found.rebuilt("identified".to_owned());
-        let rig = with_dynamics(&identified)?;
+        let rig = with_dynamics(&identified).map_err(MachineError::from)?;
         let failed = |error: &dyn std::fmt::Display| {
             Error::Failed(format!("the valve map cannot be rebuilt: {error}"))
         };

@@ -22,7 +22,7 @@ struct Layers {
 }
 
 /// The checked crates; add an entry for a new one.
-const CRATES: [Layers; 9] = [
+const CRATES: [Layers; 11] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -101,6 +101,15 @@ const CRATES: [Layers; 9] = [
         ],
     },
     Layers {
+        sources: "workbench/closed-loop/src",
+        order: &[
+            &["valve_survey"],
+            &["closed_loop"],
+            &["calibrate"],
+            &["driven"],
+        ],
+    },
+    Layers {
         sources: "workbench/fmu/src",
         order: &[
             &["kind", "location", "units", "variable"],
@@ -110,6 +119,10 @@ const CRATES: [Layers; 9] = [
             &["content"],
             &["abi"],
         ],
+    },
+    Layers {
+        sources: "workbench/try-page/src",
+        order: &[&["bench"], &["abi"]],
     },
     Layers {
         sources: "workbench/src",
@@ -129,15 +142,8 @@ const CRATES: [Layers; 9] = [
                 "web",
                 "words",
             ],
+            &["data_sheet", "demonstration", "base_fit", "next_command"],
             &[
-                "data_sheet",
-                "demonstration",
-                "valve_survey",
-                "base_fit",
-                "next_command",
-            ],
-            &[
-                "calibrate",
                 "closed_loop",
                 "comparison",
                 "explanation",

@@ -12,7 +12,7 @@ mod sources;
 mod test;
 mod timings;
 
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use arm_build::toolchain::Way;
@@ -44,6 +44,7 @@ usage: cargo xtask <task> [--arm rustup|debian] [--timings]
           feed controller and safety envelope of an earlier commit and of the present sources the same random and
           recorded steps, and list every difference; exit code 1 if docs/safety.md does not explain all of them
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
+  try-page build target/try-page/index.html, the closed loop of controller and plant in one page without server and network
   setup   find or install the ARM toolchain and the emulator
 
   --arm   take this ARM toolchain instead of the first that works:
@@ -94,6 +95,7 @@ fn run(arguments: &[String]) -> Result<()> {
             tests.run("", &mut timings)?;
         }
         "arm" | "sizes" | "stack" | "coverage" | "a2l" => build_firmware_tool(task, way)?,
+        "try-page" => run_package("try-page", &[])?,
         "mutants" => mutants::run(options.again)?,
         "setup" => setup::run(way)?,
         "help" | "--help" | "-h" => println!("{USAGE}"),
@@ -155,15 +157,12 @@ fn replay(options: &[String]) -> Result<()> {
 
 /// Builds `firmware-tools`, and runs a task of it.
 fn build_firmware_tool(task: &str, way: Option<Way>) -> Result<()> {
-    let options = [
-        "run",
-        "--quiet",
-        "--locked",
-        "--package",
-        "firmware-tools",
-        "--",
-    ];
-    let mut command: Command = process::command(workspace::cargo(), &options);
-    command.arg(task).args(way.map(Way::name));
-    process::run(&mut command)
+    let arguments: Vec<&str> = std::iter::once(task).chain(way.map(Way::name)).collect();
+    run_package("firmware-tools", &arguments)
+}
+
+/// Builds a package with a program, and runs it.
+fn run_package(package: &str, arguments: &[&str]) -> Result<()> {
+    let options = ["run", "--quiet", "--locked", "--package", package, "--"];
+    process::run(process::command(workspace::cargo(), &options).args(arguments))
 }

@@ -29,5 +29,6 @@ mod second_model;
 #[cfg(unix)]
 mod serial_adapter;
 mod serve;
+mod try_page_in_browser;
 mod upload;
 mod way_in_browser;

@@ -1,13 +1,14 @@
 //! The controller in closed loop with the dynamic plant, with wrong and correct calibrations.
 
+use hitch_closed_loop::ClosedLoop;
+use hitch_closed_loop::calibrate::calibrate;
 use hitch_controller_host::calibration_file::with_settings;
 use hitch_effects::find;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::units::{MicrometrePerSecond, PerMille};
 use hitch_quantities::{Calibration, ValidCalibration};
-use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::show::text;
-use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
+use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
 
 fn nominal() -> ValidCalibration {
     Calibration::nominal().validate().unwrap()

@@ -1,12 +1,12 @@
 //! Current regulation of the firmware on a model of coil and driver.
 
+use hitch_closed_loop::Coil;
+use hitch_closed_loop::calibrate::calibrate;
 use hitch_control::current::Regulation;
 use hitch_plant::{Model, Solenoid, ValveCurve};
 use hitch_quantities::calibration::design_parameters::CurrentParameters;
 use hitch_quantities::units::{MilliAmp, MilliVolt};
 use hitch_quantities::{Calibration, CoilCurrents, Inputs};
-use hitch_workbench::calibrate::calibrate;
-use hitch_workbench::closed_loop::Coil;
 
 const PARAMETERS: CurrentParameters = CurrentParameters::NOMINAL;
 /// Step of a 12-bit converter over 5 A, and its noise (one sigma), mA.

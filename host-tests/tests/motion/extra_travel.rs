@@ -1,10 +1,10 @@
 //! Extra travel of a hitch after a fault compared with cutting both coils at its instant: measured on the dynamic
 //! plant, in both directions, at several loads, in every phase of a long move.
 
+use hitch_closed_loop::{ClosedLoop, Sample};
 use hitch_plant::{Currents, Model};
 use hitch_quantities::units::{Count, Microsecond, MilliAmp, MilliDegree, MilliVolt, PerMille};
 use hitch_quantities::{Calibration, Fault, Inputs, Outputs};
-use hitch_workbench::closed_loop::{ClosedLoop, Sample};
 use host_tests::seeds::cases;
 
 /// Faults of a moving hitch.

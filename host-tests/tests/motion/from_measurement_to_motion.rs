@@ -1,12 +1,12 @@
 //! The complete process: valves with several deviations are measured, explained, calibrated and driven.
 
+use hitch_closed_loop::calibrate::calibrate;
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Verdict, explain};
 use hitch_plant::AddedEffect;
 use hitch_quantities::{Calibration, ValidCalibration};
-use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;

@@ -3,10 +3,10 @@
 //! Each effect is driven on two plants: the one that the model describes, where each move is the first after power-up,
 //! and the second rig, which shares no equation with it, where one controller drives all moves of a load.
 
+use hitch_closed_loop::calibrate::calibrate;
 use hitch_effects::CATALOGUE;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::{Calibration, Fault, ValidCalibration};
-use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::{Move, OIL_TEMPERATURE_C, run};
 use truth_rigs::drawn_hitches::draw::{Drawn, Readings};
 use truth_rigs::drawn_hitches::session::drive;

@@ -2,10 +2,10 @@
 //!
 //! Its equations of motion share no code with the model, from which its calibration follows.
 
+use hitch_closed_loop::calibrate::calibrate;
 use hitch_controller::Controller;
 use hitch_quantities::units::{MilliBar, MilliDegree, MilliVolt};
 use hitch_quantities::{Calibration, Fault, Inputs, ValidCalibration};
-use hitch_workbench::calibrate::calibrate;
 use host_tests::program::run;
 use truth_rigs::category_three::files::write;
 use truth_rigs::category_three::machine::{BAR, STROKE_M, Wear, angle_deg};

@@ -1,10 +1,10 @@
 //! Rate control: the external button moves the hitch at its set speed for all loads and oil temperatures, in both
 //! directions, with and without pressure sensors, after teaching.
 
+use hitch_closed_loop::ClosedLoop;
 use hitch_plant::Model;
 use hitch_quantities::units::MilliDegreePerSecond;
 use hitch_quantities::{Inputs, ValidCalibration};
-use hitch_workbench::closed_loop::ClosedLoop;
 use host_tests::teaching::{taught_calibration, typical};
 use rayon::prelude::*;
 

@@ -2,12 +2,12 @@
 //!
 //! All figures are those of the true angle.
 
+use hitch_closed_loop::ClosedLoop;
+use hitch_closed_loop::calibrate::calibrate;
 use hitch_effects::find;
 use hitch_plant::{AddedEffect, Currents, Model};
 use hitch_quantities::units::{MilliDegree, Millisecond};
 use hitch_quantities::{Calibration, Fault, ValidCalibration};
-use hitch_workbench::calibrate::calibrate;
-use hitch_workbench::closed_loop::ClosedLoop;
 use truth_rigs::drawn_hitches::draw::draw;
 use truth_rigs::drawn_hitches::figures::{FIGURES, beyond, spread, table};
 use truth_rigs::drawn_hitches::session::{MoveFigures, drive as drive_drawn};

@@ -1,10 +1,11 @@
 //! The firmware identifies thresholds and ends on plants whose valves and sensors deviate.
 
+use hitch_closed_loop::ClosedLoop;
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_plant::Model;
 use hitch_quantities::units::MilliDegree;
 use hitch_quantities::{Inputs, State};
-use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
+use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
 use host_tests::seeds::cases;
 use host_tests::teaching::{dynamic_with, nominal, teach as taught, teach_with as taught_with};
 

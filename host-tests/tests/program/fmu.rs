@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
+use hitch_closed_loop::{ClosedLoop, Coil, SUPPLY_V, Sample};
 use hitch_plant::{AddedEffect, Currents, Model, Solenoid};
 use hitch_quantities::{Calibration, Inputs};
-use hitch_workbench::closed_loop::{ClosedLoop, Coil, SUPPLY_V, Sample};
 use host_tests::program::{hitch, run};
 use host_tests::python::{installed, run as said, scripts};
 use host_tests::seeds::cases;

@@ -6,12 +6,12 @@
 //! perfect knowledge of the plant: a controller can be faster only with steeper edges, at the cost of a larger pressure
 //! swing. Its time ratio is then below one.
 
+use hitch_closed_loop::{ARRIVED_DEG, STEP_S};
 use hitch_plant::{Currents, HitchRig, Model, Plant, Rig};
 
-use super::arrival::{ARRIVED_DEG, swing_bar};
-use super::driven_plant::STEP_S;
+use super::pressure_swing::swing_bar;
 use super::scenario::Move;
-use crate::valve_survey::ValveEnds;
+use hitch_closed_loop::valve_survey::ValveEnds;
 
 /// Edge of the ideal manoeuvre, s.
 pub const EDGE_S: f64 = 0.1;

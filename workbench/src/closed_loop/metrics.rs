@@ -1,12 +1,11 @@
 //! Figures of merit of a move, evaluated on the true angle, not on the measured one.
 
+use hitch_closed_loop::{ARRIVED_DEG, STEP_S, Sample};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::arrival::{ARRIVED_DEG, swing_bar};
-use super::driven_plant::STEP_S;
 use super::ideal_ramp::IdealRamp;
-use super::loop_::Sample;
+use super::pressure_swing::swing_bar;
 use super::scenario::Move;
 
 /// Figures of one move.

@@ -1,8 +1,8 @@
 //! Why a move never arrived.
 
+use hitch_closed_loop::ARRIVED_DEG;
 use hitch_quantities::Fault;
 
-use super::arrival::ARRIVED_DEG;
 use super::metrics::MoveResult;
 use super::moves::{LoopRun, MoveTrace};
 use super::show::name;

@@ -1,28 +1,17 @@
-//! The firmware's controller in closed loop with a plant.
+//! Moves, buttons and figures of the firmware's controller in closed loop with a plant.
 
-mod arrival;
-mod coil;
-mod driven_plant;
 mod ideal_ramp;
-mod instruments;
-mod loop_;
-mod machine;
 mod metrics;
 mod missed;
 mod moves;
+mod pressure_swing;
 mod rate;
 mod scenario;
 pub mod show;
 pub mod show_variants;
 pub mod variant;
 
-pub use arrival::ARRIVED_DEG;
-pub use coil::Coil;
-pub use driven_plant::DrivenPlant;
 pub use ideal_ramp::IdealRamp;
-pub use instruments::{Instruments, SUPPLY_V};
-pub use loop_::{ClosedLoop, Sample};
-pub use machine::with_dynamics;
 pub use metrics::{MoveResult, Summary};
 pub use missed::first_missed;
 pub use moves::{Course, LoopRun, MoveTrace, courses, figures, run, run_quick_lift};

@@ -1,15 +1,14 @@
 //! Drives and evaluates moves, on all cores.
 
+use hitch_closed_loop::{ClosedLoop, STEP_S, Sample};
 use hitch_plant::Model;
 use hitch_quantities::{Fault, Inputs, ValidCalibration};
 use rayon::prelude::*;
 
-use super::driven_plant::STEP_S;
 use super::ideal_ramp::IdealRamp;
-use super::loop_::{ClosedLoop, Sample};
 use super::metrics::{MoveResult, Summary, judge};
 use super::scenario::{Move, both_ways, middle_and_room_deg};
-use crate::valve_survey::ValveEnds;
+use hitch_closed_loop::valve_survey::ValveEnds;
 
 /// Duration from the step of the set point: the longest move plus one minute, steps.
 const RUN_STEPS: usize = 64_000;

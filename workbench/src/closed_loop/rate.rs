@@ -1,5 +1,6 @@
 //! Rate control: the external button is held, and released.
 
+use hitch_closed_loop::{ClosedLoop, STEP_S};
 use hitch_plant::Model;
 use hitch_quantities::units::MilliDegreePerSecond;
 use hitch_quantities::{Inputs, ValidCalibration};
@@ -7,8 +8,6 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::driven_plant::STEP_S;
-use super::loop_::ClosedLoop;
 use super::scenario::middle_and_room_deg;
 
 /// Requested speeds as shares of the fastest one of the calibration.

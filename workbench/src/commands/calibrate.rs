@@ -7,11 +7,11 @@ use hitch_quantities::Calibration;
 use hitch_quantities::calibration::valve_table::ValveTable;
 
 use super::loop_::read_files;
-use crate::calibrate::{calibrate, carried};
 use crate::error::Error;
 use crate::output;
 use crate::outputs::Outputs;
 use crate::text::indented;
+use hitch_closed_loop::calibrate::{calibrate, carried};
 
 /// Arguments of `hitch calibrate`.
 #[derive(Debug, clap::Args)]

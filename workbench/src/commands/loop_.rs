@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use hitch_closed_loop::driven::MachineError;
 use hitch_controller_host::calibration_file;
 use hitch_plant::Model;
 use hitch_quantities::ValidCalibration;
@@ -299,7 +300,7 @@ impl Job<'_> {
                     .to_owned(),
             ));
         }
-        let model = closed_loop::with_dynamics(self.model)?;
+        let model = hitch_closed_loop::with_dynamics(self.model).map_err(MachineError::from)?;
         let Some(base) = self.calibrations.first() else {
             return Ok(());
         };

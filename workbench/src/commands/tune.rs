@@ -9,7 +9,6 @@ use hitch_quantities::Calibration;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::calibrate::calibrate;
 use crate::closed_loop::{
     self, LoopRun, Move, Press, PressRun, PressSummary, Scenario, Summary, run_presses,
 };
@@ -23,6 +22,7 @@ use crate::report::tuning_page;
 use crate::text::Table;
 use crate::tuning::figures::{self, Figure};
 use crate::tuning::{Change, Judged, Trial};
+use hitch_closed_loop::calibrate::calibrate;
 
 /// Arguments of `hitch tune`.
 #[derive(Debug, clap::Args)]

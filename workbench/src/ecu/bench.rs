@@ -9,7 +9,7 @@ use hitch_quantities::units::PerMille;
 use super::converters::{Converters, SENSOR_SUPPLY_V, Signals};
 use super::machine::{EcuMachine, MachineError};
 use super::operator::Operator;
-use crate::closed_loop::{DrivenPlant, SUPPLY_V};
+use hitch_closed_loop::{DrivenPlant, SUPPLY_V};
 
 /// True state and signals of one millisecond.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,7 @@
 //! The loop, in steps of a millisecond.
 
-use crate::closed_loop::{ClosedLoop, OIL_TEMPERATURE_C, Sample};
+use crate::closed_loop::OIL_TEMPERATURE_C;
+use hitch_closed_loop::{ClosedLoop, Sample};
 use hitch_field::soil::SoilPlan;
 use hitch_field::terrain::Terrain;
 use hitch_field::tractor::{Demand, Outputs as Field, Readings, Tractor, TractorConstants};

@@ -17,7 +17,7 @@ use super::figures::{Spread, activations};
 use super::pass::{Comparison, DRAFT_N, LINK_DEPTH_M, Pass, SPEED_M_S};
 use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings, TOUCH_DEG};
 use super::transport::{Ride, RideComparison, class_c};
-use crate::closed_loop::Sample;
+use hitch_closed_loop::Sample;
 
 /// Seeds of soil and noise over which figures are means.
 const SEEDS: u64 = 4;

@@ -10,7 +10,8 @@
 //!
 //! The implement's inertia is in that force, and not in the body; its own pitch inertia is left out.
 
-use crate::closed_loop::{ClosedLoop, OIL_TEMPERATURE_C, Sample};
+use crate::closed_loop::OIL_TEMPERATURE_C;
+use hitch_closed_loop::{ClosedLoop, Sample};
 use hitch_field::body::{Body, BodyConstants, GRAVITY_M_S2, Ground, HitchLoad};
 use hitch_field::noise::Noise;
 use hitch_field::terrain::{RoughnessConstants, Terrain};

@@ -33,7 +33,7 @@ pub fn page(scenario: &str, model: &Model, calibration: &str, run: &FieldRun) ->
 fn course(run: &FieldRun) -> Markup {
     let times = |index: usize| run.hitch.get(index).map_or(0.0, |sample| sample.time_s);
     let indices = || (0..run.hitch.len()).step_by(EVERY);
-    let hitch = |name: &str, stroke, value: &dyn Fn(&crate::closed_loop::Sample) -> f64| {
+    let hitch = |name: &str, stroke, value: &dyn Fn(&hitch_closed_loop::Sample) -> f64| {
         let points =
             indices().filter_map(|index| Some((times(index), value(run.hitch.get(index)?))));
         (name.to_owned(), stroke, points.unzip())

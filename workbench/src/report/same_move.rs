@@ -5,7 +5,8 @@ use maud::{Markup, html};
 use super::chart::Stroke;
 use super::drawn::{Drawn, Points, drawn};
 use crate::closed_loop::show_variants::Named;
-use crate::closed_loop::{LoopRun, PressRun, PressTrace, Sample};
+use crate::closed_loop::{LoopRun, PressRun, PressTrace};
+use hitch_closed_loop::Sample;
 
 /// Time shown after the last arrival, s.
 const AFTER_S: f64 = 0.5;

@@ -44,6 +44,7 @@ const FILES: &[(&str, &str, &str)] = &[
         SCRIPT,
         include_str!("assets/plot_cursor.js"),
     ),
+    ("refused.js", SCRIPT, include_str!("assets/refused.js")),
     ("run_list.js", SCRIPT, include_str!("assets/run_list.js")),
     ("signals.js", SCRIPT, include_str!("assets/signals.js")),
     ("tabs.js", SCRIPT, include_str!("assets/tabs.js")),
@@ -72,6 +73,7 @@ const FILES: &[(&str, &str, &str)] = &[
         include_str!("assets/strip_chart.js"),
     ),
     ("valve_map.js", SCRIPT, include_str!("assets/valve_map.js")),
+    ("message.js", SCRIPT, include_str!("assets/message.js")),
     ("missing.js", SCRIPT, include_str!("assets/missing.js")),
     (
         "model_panel.js",
@@ -79,6 +81,17 @@ const FILES: &[(&str, &str, &str)] = &[
         include_str!("assets/model_panel.js"),
     ),
 ];
+
+/// The text of a script, a style sheet or, with an empty name, of the page itself; `None` for any other name. The plotting library
+/// and the colours are those of [`web`].
+#[must_use]
+pub fn page_text(name: &str) -> Option<&'static str> {
+    let own = FILES.iter().map(|(name, _, text)| (*name, *text));
+    let mut files = own.chain(web::MODULES);
+    files
+        .find(|(known, _)| *known == name)
+        .map(|(_, text)| text)
+}
 
 /// A file of the page by its name; the name of the page itself is empty.
 pub fn file(name: &str) -> Option<Response> {

@@ -24,6 +24,7 @@ mod tuned;
 mod upload;
 mod views;
 
+pub use assets::page_text;
 pub use live::LoopSource;
 pub use server::run;
 pub use source::Source;

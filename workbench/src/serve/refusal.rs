@@ -4,6 +4,7 @@ use crate::error::Error;
 use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
+use hitch_closed_loop::driven::MachineError;
 use serde_json::Value;
 use serde_json::json;
 
@@ -33,6 +34,12 @@ impl Refusal {
     /// A request that conflicts with the state of the session.
     pub(super) fn conflict(what: &str) -> Self {
         Self::of(StatusCode::CONFLICT, what)
+    }
+}
+
+impl From<MachineError> for Refusal {
+    fn from(error: MachineError) -> Self {
+        Error::from(error).into()
     }
 }
 

@@ -13,13 +13,13 @@ use super::refusal::Refusal;
 use super::request::{Known, Of, blocking, find, lock};
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
-use super::tuned::calibration;
 use super::views;
 use crate::archive::zipped;
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::explanation::{self, Found};
 use crate::report::{comparison_page, explanation_page};
+use hitch_closed_loop::driven::calibration;
 
 const TOML: &str = "application/toml; charset=utf-8";
 

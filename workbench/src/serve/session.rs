@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use hitch_closed_loop::driven::Models;
 use hitch_effects::TermEffect;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::{diagnosis, explain};
@@ -12,7 +13,7 @@ use hitch_plant::{Effect, Model, full_name};
 use serde_json::Value;
 use tokio::sync::broadcast;
 
-use super::live::{Models, TabLoop};
+use super::live::TabLoop;
 use super::second::Second;
 use super::source::Subject;
 use super::tuned::TunedFor;

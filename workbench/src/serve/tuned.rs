@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use hitch_controller_host::calibration_file;
 use hitch_plant::Model;
-use hitch_quantities::{Calibration, ValidCalibration};
 
-use crate::calibrate::calibrate;
 use crate::closed_loop::{OIL_TEMPERATURE_C, Scenario, presses};
 use crate::comparison::Evaluated;
 use crate::error::Error;
 use crate::tuning::figures::Figure;
 use crate::tuning::{Change, Trial};
+use hitch_closed_loop::driven::calibration;
 
 /// A tuned calibration with its figures beside those of the calibration of the model.
 #[derive(Debug)]
@@ -25,15 +24,6 @@ pub struct TunedFor {
     pub changes: Vec<Change>,
     /// The figures, with their limits.
     pub figures: Vec<Figure>,
-}
-
-/// The calibration of a model, with the firmware's values for what the model does not tell.
-///
-/// # Errors
-/// If the model cannot be converted.
-pub fn calibration(model: &Model) -> Result<ValidCalibration, Error> {
-    calibrate(model, &Calibration::nominal())
-        .map_err(|error| Error::Usage(format!("no calibration for {}: {error}", model.name)))
 }
 
 impl TunedFor {

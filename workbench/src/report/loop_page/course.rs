@@ -2,10 +2,11 @@
 use maud::{Markup, html};
 
 use crate::closed_loop::show::name;
-use crate::closed_loop::{LoopRun, MoveResult, MoveTrace, Sample};
+use crate::closed_loop::{LoopRun, MoveResult, MoveTrace};
 use crate::report::chart::Stroke;
 use crate::report::drawn::{Drawn, Points, drawn};
 use crate::text::known;
+use hitch_closed_loop::Sample;
 
 /// Time shown after arrival, s.
 const AFTER_S: f64 = 0.6;

@@ -2,9 +2,10 @@
 use maud::{Markup, html};
 
 use super::occurring;
-use crate::closed_loop::{LoopRun, MoveResult, MoveTrace, Sample};
+use crate::closed_loop::{LoopRun, MoveResult, MoveTrace};
 use crate::report::chart::Stroke;
 use crate::report::drawn::{Drawn, Points, drawn};
+use hitch_closed_loop::Sample;
 
 /// Time shown after the slowest arrival, s.
 const AFTER_S: f64 = 0.4;

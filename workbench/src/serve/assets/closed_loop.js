@@ -3,7 +3,7 @@
 import { byId, element } from "./dom.js";
 import { drawLinkage } from "./linkage.js";
 import { connectOrders, limitLever, orders } from "./loop_orders.js";
-import { Refused, address, post } from "./server.js";
+import { Refused } from "./refused.js";
 import { addSamples, clearChart, drawChart, showOnly } from "./strip_chart.js";
 import { drawMaps } from "./valve_map.js";
 
@@ -36,15 +36,21 @@ let visible = false;
 /** Shows an error.
  * @type {(error: unknown) => void} */
 let say = () => {};
+/** Who answers the requests: the server, or a module inside the page.
+ * @typedef {{post: (path: string, body: Record<string, unknown>) => Promise<any>, address: (path: string) => string}} Transport */
+/** @type {Transport} */
+let transport;
 /** State and fault of each hitch, as last reported. */
 let reported = ["", ""];
 /** The simulation that answers belong to: those of an older one are ignored. */
 let generation = 0;
 
 /** Connects the section.
- * @param {(error: unknown) => void} show shows an error */
-export function connectLoop(show) {
+ * @param {(error: unknown) => void} show shows an error
+ * @param {Transport} of answers the requests */
+export function connectLoop(show, of) {
   say = show;
+  transport = of;
   connectOrders();
   byId("loop-start").addEventListener("click", () => (running ? stop() : start()));
   byId("loop-restart").addEventListener("click", () => reopen());
@@ -59,7 +65,7 @@ export function connectLoop(show) {
  * @param {any} state */
 export function followModel(state) {
   const now = JSON.stringify([state.at, state.effects]);
-  /** @type {HTMLAnchorElement} */ (byId("save-calibration")).href = address("calibration");
+  /** @type {HTMLAnchorElement} */ (byId("save-calibration")).href = transport.address("calibration");
   const changed = now !== model;
   model = now;
   if (changed && machine) reopen();
@@ -96,7 +102,7 @@ async function reopen() {
   opened = false;
   try {
     const path = starts ? "loop/open" : "loop/describe";
-    const described = await post(path, { orders: { ...orders(), button: null, fault: null } });
+    const described = await transport.post(path, { orders: { ...orders(), button: null, fault: null } });
     if (own !== generation) return;
     machine = described;
     opened = starts;
@@ -152,7 +158,7 @@ async function stop() {
   if (!isEcu()) return;
   generation += 1;
   byId("loop-pace").textContent = "";
-  await post("loop/close", {}).catch(say);
+  await transport.post("loop/close", {}).catch(say);
 }
 
 /** Writes the calibration of the present model to the ECU on the bus. */
@@ -165,7 +171,7 @@ async function write() {
   button.disabled = true;
   result.textContent = "writing";
   try {
-    const { changed, words } = await post("loop/write", {});
+    const { changed, words } = await transport.post("loop/write", {});
     result.textContent = `${changed} of ${words} values changed; stored and verified`;
   } catch (error) {
     result.textContent = "";
@@ -187,7 +193,7 @@ async function step(milliseconds) {
   const given = orders();
   const began = performance.now();
   try {
-    const answer = await post("loop/step", { orders: given, milliseconds });
+    const answer = await transport.post("loop/step", { orders: given, milliseconds });
     if (own !== generation) return;
     show(answer, given);
     const pace = milliseconds / (performance.now() - began);

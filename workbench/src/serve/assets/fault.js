@@ -1,7 +1,7 @@
 // @ts-check
 /** Shows a fault: where, what, and a suggested correction. */
 import { element } from "./dom.js";
-import { Refused } from "./server.js";
+import { Refused } from "./refused.js";
 
 /** The lines of a fault.
  * @param {unknown} error */

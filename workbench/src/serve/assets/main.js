@@ -7,6 +7,7 @@ import { worstCell } from "./error_map.js";
 import { faultLines } from "./fault.js";
 import { connectFiles } from "./files.js";
 import { connectFirst, drawFirst, held } from "./first_model.js";
+import { say, sayError } from "./message.js";
 import { drawMissing, drawRanking, insert, meaning } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
 import { endOverlay, isOverlaid, openOverlay, overlayBox, previewOverlay, refreshOverlay } from "./overlay.js";
@@ -15,7 +16,7 @@ import { connectCursor } from "./plot_cursor.js";
 import { arrange, connectRuns, listRuns, pickRun, tellErrors } from "./run_list.js";
 import { drawRun, loadLibrary, readable, redrawRun, zoomRun } from "./run_plot.js";
 import { connectSecond, drawCompared } from "./second.js";
-import { Refused, ask, begin, follow, leave, post } from "./server.js";
+import { address, ask, begin, follow, leave, post } from "./server.js";
 import { chosen, listSignals } from "./signals.js";
 import { connectTabs, openTab } from "./tabs.js";
 import { connectTrials } from "./trial.js";
@@ -253,21 +254,6 @@ function showJob(title) {
   document.body.toggleAttribute("data-busy", Boolean(title));
 }
 
-/** Shows a message for some seconds.
- * @param {string} text */
-function say(text) {
-  const message = byId("message");
-  message.textContent = text;
-  message.hidden = false;
-  setTimeout(() => { message.hidden = true; }, 8000);
-}
-
-/** Shows an error for some seconds.
- * @param {unknown} error */
-function sayError(error) {
-  say(error instanceof Refused ? [error.fault.what, error.fault.mend].filter(Boolean).join(" ") : String(error));
-}
-
 /** Wraps a function so that its errors are shown on the page.
  * @template {any[]} A
  * @param {(...args: A) => Promise<void>} work */
@@ -363,5 +349,5 @@ new ResizeObserver(() => {
 connectSecond(launch, refresh);
 connectFirst(another, acts.run);
 connectController(guarded, refresh, acts.run);
-connectLoop(sayError);
+connectLoop(sayError, { post, address });
 open();

@@ -1,7 +1,8 @@
 // @ts-check
 /** Form for a user-defined term, checked by the server during input. */
 import { byId, element } from "./dom.js";
-import { Refused, ask, post } from "./server.js";
+import { Refused } from "./refused.js";
+import { ask, post } from "./server.js";
 
 /** Time without input after which the form is checked, ms. */
 const REST_MS = 300;

@@ -1,16 +1,6 @@
 // @ts-check
 /** Requests to the server. */
-
-/** @typedef {{file?: string, line?: number, column?: number, what: string, mend?: string}} Fault */
-
-/** A refused or failed request. */
-export class Refused extends Error {
-  /** @param {Fault} fault */
-  constructor(fault) {
-    super(fault.what);
-    this.fault = fault;
-  }
-}
+import { Refused } from "./refused.js";
 
 let session = "";
 

@@ -3,11 +3,8 @@
 use std::sync::mpsc::{Receiver, Sender, SyncSender, TrySendError, channel, sync_channel};
 use std::time::Instant;
 
+use hitch_closed_loop::driven::{Machine, Orders, Pair};
 use serde_json::{Value, json};
-
-use super::hitch::Hitch;
-use super::machine::Machine;
-use super::orders::Orders;
 
 /// An advance of both hitches.
 struct Advance {
@@ -65,14 +62,10 @@ impl Bench {
 
 /// Advances both hitches until the sender is dropped.
 fn run(machine: &Machine, orders: &Orders, angle_deg: f64, advances: &Receiver<Advance>) {
-    let calibrations = [&machine.initial, &machine.rebuilt];
-    let mut hitches =
-        calibrations.map(|calibration| Hitch::new(&machine.plant, calibration, orders, angle_deg));
+    let mut pair = Pair::new(machine, orders, angle_deg);
     while let Ok(advance) = advances.recv() {
         let began = Instant::now();
-        let loops = hitches
-            .each_mut()
-            .map(|hitch| hitch.advance(&advance.orders, advance.steps));
+        let loops = pair.advance(&advance.orders, advance.steps);
         let took_s = began.elapsed().as_secs_f64().max(1e-6);
         // The request may have been abandoned.
         let _ = advance.answer.send(json!({

@@ -2,17 +2,16 @@
 
 use std::ops::RangeInclusive;
 
+use hitch_closed_loop::driven::{Button, Kind, Orders, Sensor, SensorFault};
 use hitch_ecu::{AdcCode, BoardScaling, Contact, Contacts, Conversion, Samples};
 use hitch_plant::Model;
 use hitch_quantities::units::{MilliAmp, MilliDegree};
 use hitch_quantities::{Fault, Outputs, State, Trip};
 
-use super::orders::{Button, Orders};
-use super::sensor_fault::{Kind, Sensor, SensorFault};
-use crate::closed_loop::Sample;
 use crate::ecu::{
     Bench, EcuMachine, MachineError, Moment, Order, PICK_UP_MS, ratiometric_codes, reach_deg,
 };
+use hitch_closed_loop::Sample;
 
 /// Seed of the noise.
 const SEED: u64 = 0x5eed_0001;

@@ -8,14 +8,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
+use hitch_closed_loop::driven::{Machine, Orders, Strip};
 use serde_json::{Value, json};
 
 use super::ecu_bench::EcuBench;
-use super::machine::Machine;
-use super::orders::Orders;
-use super::strip::Strip;
-use crate::closed_loop::Sample;
 use crate::ecu::{MachineError, Pace, PaceChange, PoweredEcu, Runner, delivered};
+use hitch_closed_loop::Sample;
 
 /// Silence of a tab after which its ECU is switched off.
 const SILENT: Duration = Duration::from_secs(5);

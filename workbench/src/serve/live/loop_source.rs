@@ -4,14 +4,13 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
 use axum::http::StatusCode;
+use hitch_closed_loop::driven::{Machine, Orders};
 use hitch_quantities::ValidCalibration;
 use serde_json::Value;
 
 use super::bench::{Bench, NoAnswer};
 use super::bus::{BusMonitor, Place};
 use super::emulated::{EcuSocket, NoEcu, RunningEcu};
-use super::machine::Machine;
-use super::orders::Orders;
 use crate::comparison::Evaluated;
 use crate::ecu::Runner;
 use crate::error::Error;

@@ -7,13 +7,13 @@ use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
+use hitch_closed_loop::driven::{Machine, Orders, described, wrong_advance};
 use hitch_controller_host::calibration_file;
 use serde::Deserialize;
-use serde_json::json;
+use serde_json::{Value, json};
 
-use super::description::described;
-use super::machine::Machine;
-use super::orders::{LONGEST_MS, Orders};
+use super::loop_source::LoopSource;
+use crate::error::Error;
 use crate::serve::refusal::Refusal;
 use crate::serve::request::{Answer, Known, Of, blocking, find, lock};
 
@@ -40,15 +40,11 @@ async fn describe(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let session = find(&sessions, &wanted.session)?;
     let orders = checked(wanted.orders)?;
     let models = lock(&session).models();
-    let view = blocking(move || {
+    let shown = blocking(move || {
         let machine = models.machine()?;
-        described(
-            &machine,
-            start_deg(&machine, &orders),
-            &sessions.loop_source,
-        )
+        view(&machine, machine.start_deg(&orders), &sessions.loop_source)
     });
-    Ok(Json(view.await??))
+    Ok(Json(shown.await??))
 }
 
 /// Starts a closed loop at rest with the lever at its position; replaces that of before.
@@ -66,14 +62,14 @@ async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let started = blocking(move || {
         drop(before);
         let machine = models.machine()?;
-        let angle_deg = start_deg(&machine, &orders);
+        let angle_deg = machine.start_deg(&orders);
         let source = &sessions.loop_source;
-        let view = described(&machine, angle_deg, source)?;
-        Ok::<_, Refusal>((source.start(of, machine, orders, angle_deg)?, view))
+        let shown = view(&machine, angle_deg, source)?;
+        Ok::<_, Refusal>((source.start(of, machine, orders, angle_deg)?, shown))
     });
-    let (tab_loop, view) = started.await??;
+    let (tab_loop, shown) = started.await??;
     lock(&session).tab_loop = Some(tab_loop);
-    Ok(Json(view))
+    Ok(Json(shown))
 }
 
 /// Ends the closed loop.
@@ -98,12 +94,10 @@ async fn write(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     ))
 }
 
-/// The angle of the lever, within the travel of the hitch, degree.
-fn start_deg(machine: &Machine, orders: &Orders) -> f64 {
-    let (low_rad, high_rad) = machine.plant.linkage().swing_rad();
-    orders
-        .lever_deg
-        .clamp(low_rad.to_degrees(), high_rad.to_degrees())
+/// The description of a machine whose hitches begin at an angle, degree.
+fn view(machine: &Machine, angle_deg: f64, source: &LoopSource) -> Result<Value, Error> {
+    described(machine, angle_deg, source.name(), source.may_write())
+        .map_err(|error| Error::Failed(format!("the linkage cannot be drawn: {error}")))
 }
 
 /// An advance of both hitches.
@@ -117,11 +111,7 @@ struct Advance {
 async fn step(State(sessions): Known, Json(wanted): Json<Advance>) -> Answer {
     let session = find(&sessions, &wanted.session)?;
     let orders = checked(wanted.orders)?;
-    if !(1..=LONGEST_MS).contains(&wanted.milliseconds) {
-        let what = format!(
-            "milliseconds is {}; it has to be from 1 to {LONGEST_MS}",
-            wanted.milliseconds
-        );
+    if let Some(what) = wrong_advance(wanted.milliseconds) {
         return Err(Refusal::wrong(json!({ "what": what })));
     }
     let pending = {

@@ -1,7 +1,4 @@
-//! When a move has arrived, and how the pressure swings.
-
-/// A move has arrived when the angle stays within this distance of the set point, degree.
-pub const ARRIVED_DEG: f64 = 0.5;
+//! How the pressure swings.
 
 /// Peak to peak, bar.
 pub fn swing_bar(pressures_bar: impl Iterator<Item = f64>) -> f64 {

@@ -6,32 +6,34 @@ use hitch_quantities::calibration::valve_table::ValveTable;
 use hitch_quantities::units::MilliAmp;
 use serde_json::{Value, json};
 
-use super::loop_source::LoopSource;
 use super::machine::Machine;
 use super::orders::{LOADS_KG, LONGEST_MS, OILS_C};
-use crate::error::Error;
 
 /// Drawn positions of the linkage over its swing; the page interpolates between them with less than 0.2 mm of error.
 const POSITIONS: u32 = 64;
 
-/// The description of a machine whose hitches begin at an angle, degree.
+/// The description of a machine whose hitches begin at an angle, degree. `source` names what runs the controller: `host`, `ecu`
+/// or `bus`; the page may write a calibration to it if `may_write`.
 ///
 /// # Errors
 /// If the linkage cannot be assembled.
-pub fn described(machine: &Machine, angle_deg: f64, source: &LoopSource) -> Result<Value, Error> {
-    let failed =
-        |error: LinkageError| Error::Failed(format!("the linkage cannot be drawn: {error}"));
+pub fn described(
+    machine: &Machine,
+    angle_deg: f64,
+    source: &str,
+    may_write: bool,
+) -> Result<Value, LinkageError> {
     let (low_rad, high_rad) = machine.plant.linkage().swing_rad();
     let (initial, rebuilt) = (&machine.initial, &machine.rebuilt);
     Ok(json!({
-        "source": source.name(),
-        "may_write": source.may_write(),
+        "source": source,
+        "may_write": may_write,
         "angle_deg": angle_deg,
         "swing_deg": [low_rad.to_degrees(), high_rad.to_degrees()],
         "loads_kg": [LOADS_KG.start(), LOADS_KG.end()],
         "oils_c": [OILS_C.start(), OILS_C.end()],
         "longest_ms": LONGEST_MS,
-        "linkage": linkage(&machine.plant).map_err(failed)?,
+        "linkage": linkage(&machine.plant)?,
         "equal": initial == rebuilt,
         "maps": [valve_maps(initial), valve_maps(rebuilt)],
     }))

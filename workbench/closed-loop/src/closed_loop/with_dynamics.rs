@@ -1,15 +1,13 @@
 //! The machine that a closed loop drives: a model with dynamics.
 
 use hitch_model_file::dynamic;
-use hitch_plant::{Constants, Dynamics, Model, OrificeValve};
-
-use crate::error::Error;
+use hitch_plant::{Constants, Dynamics, LinkageError, Model, OrificeValve};
 
 /// A quasi-static model with its declared inertia, compressibility and spool lag; a dynamic one unchanged.
 ///
 /// # Errors
 /// If its linkage cannot be assembled.
-pub fn with_dynamics(model: &Model) -> Result<Model, Error> {
+pub fn with_dynamics(model: &Model) -> Result<Model, LinkageError> {
     let constants = model.constants();
     if constants.dynamics == Dynamics::Dynamic {
         return Ok(model.clone());
@@ -29,6 +27,5 @@ pub fn with_dynamics(model: &Model) -> Result<Model, Error> {
         lower_valve: laminar(&constants.lower_valve, lower),
         ..constants.clone()
     };
-    let failed = |error| Error::Failed(format!("the model has no linkage: {error}"));
-    model.with_constants(constants).map_err(failed)
+    model.with_constants(constants)
 }

@@ -19,6 +19,13 @@ const OFFSETS: std::ops::RangeInclusive<f64> = -1000.0..=1000.0;
 /// Rocker speed that a button requests, in thousandths of a degree per second; the firmware limits it.
 const BUTTON: MilliDegreePerSecond = MilliDegreePerSecond(15_000);
 
+/// Why a request cannot advance by this many milliseconds; `None` if it can.
+#[must_use]
+pub fn wrong_advance(milliseconds: u32) -> Option<String> {
+    (!(1..=LONGEST_MS).contains(&milliseconds))
+        .then(|| format!("milliseconds is {milliseconds}; it has to be from 1 to {LONGEST_MS}"))
+}
+
 /// A button that moves the hitch while it is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
