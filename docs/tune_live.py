@@ -59,7 +59,7 @@ application = create_application_from_config({"Transport": {"CAN": link}})
 application.transport.layer = "CAN"
 set_application(application)
 description = (FIRMWARE / "hitch.a2l").read_text(encoding="utf-8")
-address = int(re.search(r'CHARACTERISTIC position.approach_gain\n  ".*"\n  VALUE (\w+)', description).group(1), 16)
+address = int(re.search(r'CHARACTERISTIC position.approach_gain ".*"\s+VALUE (\w+)', description).group(1), 16)
 
 
 def move(target_deg, tuned=lambda: None):

@@ -143,7 +143,7 @@ def limits_are_refused(node, values):
 
 def loosest_safety_values(node):
     """The A2L names the direction in which a value becomes looser."""
-    pattern = r'CHARACTERISTIC ((?:safety|sensors)\.\w+)\n  ".*\(Safety: .*(increased|reduced|changed) with the key only'
+    pattern = r'CHARACTERISTIC ((?:safety|sensors)\.\w+) ".*\(Safety: .*(increased|reduced|changed) with the key only'
     directions = dict(re.findall(pattern, node.a2l))
     accepted, tried = [], 0
     with node.master() as master:

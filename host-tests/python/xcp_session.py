@@ -28,14 +28,14 @@ class Description:
         self.identity_address = int(re.search(r"ADDR_EPK (\w+)", text).group(1), 16)
         segment = re.search(r"MEMORY_SEGMENT calibration .*? INTERN (\w+) (\w+)", text)
         self.calibration, self.length = (int(number, 16) for number in segment.groups())
-        counts = dict(re.findall(r"COMPU_METHOD (\w+) .*?\n  COEFFS 0 (\d+) 0 0 0 1", text))
+        counts = dict(re.findall(r"COMPU_METHOD (\w+) .*\s+RAT_FUNC .*\s+COEFFS 0 (\d+) 0 0 0 1", text))
         self.parameters = {}
-        pattern = r'CHARACTERISTIC (\S+)\n  ".*"\n  VALUE (\w+) word 0 (\w+) (\S+) (\S+)'
+        pattern = r'CHARACTERISTIC (\S+) ".*"\s+VALUE (\w+) word 0 (\w+) (\S+) (\S+)'
         for name, address, method, low, high in re.findall(pattern, text):
             scale = int(counts[method])
             limits = round(float(low) * scale), round(float(high) * scale)
             self.parameters[name] = (int(address, 16), *limits)
-        pattern = r'MEASUREMENT (\S+)\n  ".*"\n  (\w+) (\w+) .*\n  ECU_ADDRESS (\w+)'
+        pattern = r'MEASUREMENT (\S+) ".*"\s+(\w+) (\w+) .*\s+ECU_ADDRESS (\w+)'
         self.measurements = {
             name: (int(address, 16), A2L_TYPES[kind]) for name, kind, _, address in re.findall(pattern, text)
         }

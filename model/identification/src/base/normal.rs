@@ -17,14 +17,9 @@ use crate::data::nuisance::CurrentShift;
 use crate::data::nuisance::{LOAD_PRIOR, Nuisance};
 use crate::data::problem::Problem;
 use crate::estimate::{CLOCKS, Estimate};
-use crate::estimation::residual_columns::{dot, huber, huber_residuals, square_sum};
-use crate::estimation::slow_columns::offset_columns_of_run;
+use crate::estimation::residual_columns::{dot, huber, huber_residuals, quotient, square_sum};
+use crate::estimation::slow_columns::{STEP_OF_CONSTANTS, offset_columns_of_run};
 use crate::residuals::whitening::Weights;
-
-/// Step of a difference quotient to either side, in sigmas of the prior. Quotients are central: some directions are
-/// hardly determined (cracking pressure against flow), and the curvature error of a one-sided quotient would appear to
-/// determine them.
-const STEP: f64 = 0.02;
 
 /// The least-squares problem: a campaign and a declared model whose constants are unknown.
 pub struct BaseProblem<'a> {
@@ -161,7 +156,9 @@ impl BaseProblem<'_> {
         }
     }
 
-    /// Models a step down and up in each unknown; `None` if it is fixed or one of the models is not valid.
+    /// Models a step down and up in each unknown; `None` if it is fixed or one of the models is not valid. Quotients are
+    /// central: some directions are hardly determined (cracking pressure against flow), and the curvature error of a
+    /// one-sided quotient would appear to determine them.
     fn moved(&self, theta: &DVector<f64>) -> Vec<Option<Sides>> {
         (0..theta.len())
             .into_par_iter()
@@ -169,7 +166,7 @@ impl BaseProblem<'_> {
                 if self.held[unknown] {
                     return None;
                 }
-                let step = STEP * self.prior.sigma[unknown];
+                let step = STEP_OF_CONSTANTS * self.prior.sigma[unknown];
                 let side = |step: f64| {
                     let mut moved = theta.clone();
                     moved[unknown] += step;
@@ -211,16 +208,11 @@ impl BaseProblem<'_> {
         };
         let nuisance = estimate.nuisances[index];
         let here = residual(model, nuisance);
-        // The residual decreases where the simulation increases.
-        let column = |down: Vec<f64>, up: Vec<f64>, apart: f64| -> Vec<f64> {
-            let both = down.iter().zip(up);
-            both.map(|(down, up)| (down - up) / apart).collect()
-        };
         let mut columns: Vec<Vec<f64>> = moved
             .par_iter()
             .map(|moved| match moved {
                 Some(Sides { down, up, apart }) => {
-                    column(residual(down, nuisance), residual(up, nuisance), *apart)
+                    quotient(&residual(down, nuisance), residual(up, nuisance), *apart)
                 }
                 None => vec![0.0; here.len()],
             })
@@ -239,7 +231,7 @@ impl BaseProblem<'_> {
                 let load = nuisance.load + sigmas * LOAD_PRIOR;
                 residual(model, Nuisance { load })
             });
-            column(down, up, 1.0)
+            quotient(&down, up, 1.0)
         });
         RunColumns {
             columns,

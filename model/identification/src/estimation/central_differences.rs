@@ -14,7 +14,7 @@ use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::Jacobian;
-use crate::estimation::residual_columns::{difference, huber_residuals};
+use crate::estimation::residual_columns::central_quotients;
 
 /// Step to either side, as a share of the parameter's value, or of its scale if that is larger.
 const STEP: f64 = 0.01;
@@ -28,10 +28,11 @@ pub(crate) fn with_central_differences(
     mut jacobian: Jacobian,
     index: usize,
 ) -> Jacobian {
+    let estimate = &fit.estimate;
     let smooth = |shared: Shared| {
         matches!(shared, Shared::Effect(effect, _) if effect == index)
             && matches!(
-                fit.estimate.size_response(shared),
+                estimate.size_response(shared),
                 SizeResponse::Smooth | SizeResponse::Stepped
             )
     };
@@ -40,7 +41,12 @@ pub(crate) fn with_central_differences(
         .par_iter()
         .enumerate()
         .filter(|&(_, &shared)| smooth(shared))
-        .map(|(column, &shared)| (column, quotient(problem, fit, shared)))
+        .map(|(column, &shared)| {
+            let size = estimate.get(shared).abs().max(estimate.scale(shared));
+            let step = STEP * size;
+            let quotients = central_quotients(problem, &fit.weights, estimate, shared, step);
+            (column, quotients)
+        })
         .collect();
     for (column, quotients) in columns {
         for (run, quotient) in jacobian.runs.iter_mut().zip(quotients) {
@@ -48,23 +54,4 @@ pub(crate) fn with_central_differences(
         }
     }
     jacobian
-}
-
-/// Change of the simulation per step of one scale.
-fn quotient(problem: Problem<'_>, fit: &Fit, shared: Shared) -> Vec<Vec<f64>> {
-    let (value, scale) = (fit.estimate.get(shared), fit.estimate.scale(shared));
-    let step = STEP * value.abs().max(scale);
-    let [below, above] = [-step, step].map(|step| {
-        let mut moved = fit.estimate.clone();
-        moved.set(shared, value + step);
-        moved
-    });
-    let taken = (above.get(shared) - below.get(shared)) / scale;
-    let left = |estimate| huber_residuals(problem, &fit.weights, estimate);
-    // The residual decreases where the simulation increases.
-    let mut change = difference(&left(&below), &left(&above));
-    for sample in change.iter_mut().flatten() {
-        *sample /= taken;
-    }
-    change
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared, Step};
-use crate::estimation::residual_columns::{dot, huber_residuals, quotient, subtract};
+use crate::estimation::residual_columns::{dot, huber_residuals, quotients, subtract};
 use crate::estimation::slow_columns::SlowColumns;
 use crate::residuals::whitening::Weights;
 
@@ -68,7 +68,7 @@ fn shared_column(
         moved.set(parameter, value - step);
     }
     let taken = (moved.get(parameter) - value) / scale;
-    quotient(base, huber_residuals(problem, weights, &moved), taken)
+    quotients(base, huber_residuals(problem, weights, &moved), taken)
 }
 
 impl Jacobian {

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::data::problem::Problem;
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Shared};
 use crate::residuals::whitening::Weights;
 
 /// Threshold of Huber's loss, in sigmas: beyond it the loss grows linearly instead of quadratically.
@@ -90,16 +90,39 @@ pub fn subtract(column: &mut [f64], share: f64, part: &[f64]) {
     }
 }
 
-/// Change of the simulation per step of one scale: the residual decreases where the simulation increases.
-pub(super) fn quotient(base: &[Vec<f64>], moved: Vec<Vec<f64>>, step: f64) -> Vec<Vec<f64>> {
+/// Change of a run's simulation per step of one scale: the residual decreases where the simulation increases.
+pub(crate) fn quotient(base: &[f64], mut moved: Vec<f64>, step: f64) -> Vec<f64> {
+    for (m, b) in moved.iter_mut().zip(base) {
+        *m = (b - *m) / step;
+    }
     moved
-        .into_iter()
-        .zip(base)
-        .map(|(mut moved, base)| {
-            for (m, b) in moved.iter_mut().zip(base) {
-                *m = (b - *m) / step;
-            }
-            moved
-        })
+}
+
+/// [`quotient`] of every run.
+pub(super) fn quotients(base: &[Vec<f64>], moved: Vec<Vec<f64>>, step: f64) -> Vec<Vec<f64>> {
+    let runs = base.iter().zip(moved);
+    runs.map(|(base, moved)| quotient(base, moved, step))
         .collect()
+}
+
+/// The same between `step` below and above an estimate, in the unit of the parameter, within its range. The curvature
+/// cancels. Zero where the parameter cannot move.
+pub(super) fn central_quotients(
+    problem: Problem<'_>,
+    weights: &Weights,
+    estimate: &Estimate,
+    parameter: Shared,
+    step: f64,
+) -> Vec<Vec<f64>> {
+    let side = |step: f64| {
+        let mut moved = estimate.clone();
+        moved.set(parameter, estimate.get(parameter) + step);
+        let residuals = huber_residuals(problem, weights, &moved);
+        (moved.get(parameter), residuals)
+    };
+    let ((low, below), (high, above)) = rayon::join(|| side(-step), || side(step));
+    match high > low {
+        true => quotients(&below, above, (high - low) / estimate.scale(parameter)),
+        false => below.iter().map(|run| vec![0.0; run.len()]).collect(),
+    }
 }

@@ -9,14 +9,16 @@ use crate::data::experiment::Experiment;
 use crate::data::nuisance::CurrentShift;
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared};
-use crate::estimation::residual_columns::{dot, huber, huber_residuals, quotient};
+use crate::estimation::residual_columns::{
+    central_quotients, dot, huber, huber_residuals, quotient,
+};
 use crate::residuals::whitening::Weights;
 
 /// Step of a channel's clock offset, in prior sigmas.
 const STEP_OF_OFFSET: f64 = 0.25;
 
-/// Step of the free constants, in tolerances.
-const STEP_OF_CONSTANTS: f64 = 0.02;
+/// Step of corrections of constants to either side, in tolerances.
+pub(crate) const STEP_OF_CONSTANTS: f64 = 0.02;
 
 /// Sensitivities of all runs to their load errors, per step of one prior sigma.
 fn load_columns(
@@ -38,11 +40,9 @@ fn load_columns(
         })
         .collect();
     let moved = huber_residuals(problem, weights, &moved);
-    let mut columns = quotient(base, moved, 1.0);
-    for (column, step) in columns.iter_mut().zip(steps) {
-        column.iter_mut().for_each(|change| *change /= step);
-    }
-    columns
+    let runs = base.iter().zip(moved).zip(steps);
+    runs.map(|((base, moved), step)| quotient(base, moved, step))
+        .collect()
 }
 
 /// Sensitivities of all runs to the channels' clock offsets, per step of one prior sigma; by channel, then by run.
@@ -76,19 +76,19 @@ pub(crate) fn offset_columns_of_run(
 ) -> [Vec<f64>; 4] {
     let (run, weights) = (&experiment.runs[index], &weights.runs[index]);
     let stamped = run.stamped(plain, &clocks);
-    let base = huber(vec![weights.whiten(run, &stamped)]);
+    let residual = |trace: &Trace| huber(vec![weights.whiten(run, trace)]).swap_remove(0);
+    let base = residual(&stamped);
     std::array::from_fn(|channel| {
         if channel == Channel::PumpPressure.index() && !experiment.ringing {
             // A clock would move only its jumps, and samples next to those are left out.
-            return vec![0.0; base[0].len()];
+            return vec![0.0; base.len()];
         }
         let mut moved = clocks;
         moved.offsets_s[channel] += STEP_OF_OFFSET * OFFSET_PRIOR_S;
         let mut trace = stamped.clone();
         let late = moved.stamped_channel(Channel::ALL[channel], &run.drive.time_s, plain);
         trace.channels[channel] = late;
-        let moved = huber(vec![weights.whiten(run, &trace)]);
-        quotient(&base, moved, STEP_OF_OFFSET).swap_remove(0)
+        quotient(&base, residual(&trace), STEP_OF_OFFSET)
     })
 }
 
@@ -101,19 +101,14 @@ fn constant_columns(
     estimate: &Estimate,
 ) -> Vec<Vec<Vec<f64>>> {
     let column = |direction: usize| {
-        let shared = Shared::Constants(direction);
-        let side = |step: f64| {
-            let mut moved = estimate.clone();
-            moved.set(shared, estimate.get(shared) + step);
-            let residuals = huber_residuals(problem, weights, &moved);
-            (moved.get(shared), residuals)
-        };
-        let ((low, below), (high, above)) =
-            rayon::join(|| side(-STEP_OF_CONSTANTS), || side(STEP_OF_CONSTANTS));
-        match high > low {
-            true => quotient(&below, above, (high - low) / estimate.scale(shared)),
-            false => below.iter().map(|run| vec![0.0; run.len()]).collect(),
-        }
+        let step = STEP_OF_CONSTANTS;
+        central_quotients(
+            problem,
+            weights,
+            estimate,
+            Shared::Constants(direction),
+            step,
+        )
     };
     let directions = 0..estimate.constant_directions();
     directions.into_par_iter().map(column).collect()

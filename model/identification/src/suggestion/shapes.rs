@@ -1,7 +1,9 @@
 //! The grammar of suggestions: combinations of place, signal and shape with a physical meaning.
 
 use hitch_effects::expression::{ParameterDefinition, TermDefinition};
+use hitch_input::unit::Unit;
 use hitch_plant::Place;
+use hitch_plant::hooks::signals::SIGNALS;
 
 use crate::adequacy::signal::Signal;
 use crate::data::problem::Problem;
@@ -115,15 +117,9 @@ const SHAPES: [(&str, &str); 6] = [
 
 /// A signal's display unit, and one of it in SI.
 fn unit(signal: &str) -> (&'static str, f64) {
-    match signal {
-        "x" => ("mm", 1e-3),
-        "v" => ("mm/s", 1e-3),
-        "rocker_angle" => ("deg", 1f64.to_radians()),
-        "p_cyl" => ("bar", 1e5),
-        "q_lift" | "q_lower" => ("l/min", 1e-3 / 60.0),
-        "i_lift" | "i_lower" => ("A", 1.0),
-        _ => ("degC", 1.0),
-    }
+    let known = SIGNALS.iter().find(|known| known.name == signal);
+    let unit = known.map_or("", |known| known.written_unit);
+    (unit, Unit::parse(unit).map_or(1.0, |unit| unit.si))
 }
 
 /// Signals of formulas for a signal of the attribution.

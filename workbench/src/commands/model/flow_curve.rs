@@ -4,7 +4,6 @@ use std::path::Path;
 
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
-use hitch_plant::units::M3_S_PER_LPM;
 use hitch_plant::{ValveCurve, ValveCurveError};
 
 use super::number_table::{NumberTable, Wanted};
@@ -15,30 +14,18 @@ const COLUMNS: [Wanted; 2] = [
     Wanted {
         quantity: "current",
         words: &[],
-        units: &[("a", 1.0), ("ma", 1e-3)],
+        units: &["A", "mA"],
         offered: "A or mA",
         example: EXAMPLE,
     },
     Wanted {
         quantity: "flow",
         words: &[],
-        units: &[
-            ("lpm", M3_S_PER_LPM),
-            ("l/min", M3_S_PER_LPM),
-            ("l_min", M3_S_PER_LPM),
-            ("l/s", 1e-3),
-            ("l_s", 1e-3),
-            ("gpm", M3_S_PER_GPM),
-            ("m3/s", 1.0),
-            ("m3_s", 1.0),
-        ],
+        units: &["l/min", "l/s", "gpm", "m3/s"],
         offered: "l/min, l/s, gpm or m3/s",
         example: EXAMPLE,
     },
 ];
-
-/// A US gallon a minute, m3/s.
-const M3_S_PER_GPM: f64 = 3.785_411_784e-3 / 60.0;
 
 /// Reads a flow curve: a header with a current in A or mA and a flow in l/min, l/s, gpm or m3/s, and one row per point.
 ///
@@ -91,6 +78,29 @@ mod tests {
         let curve = &nominal.constants().lift_valve.curve;
         for (&current_a, &flow_m3_s) in curve.currents_a().iter().zip(curve.flows_m3_s()) {
             assert_eq!(shipped.flow_m3_s(current_a), flow_m3_s, "{current_a} A");
+        }
+    }
+
+    #[test]
+    fn the_unit_is_written_or_ends_the_name() {
+        for (header, one_lpm) in [
+            ("current_a,flow_l_min", 1.0),
+            ("current_a,flow_l_s", 1.0 / 60.0),
+            ("I_MA,Q_M3_S", 1e-3 / 60.0),
+            ("Current [mA],Flow [gpm]", 1.0 / 3.785_411_784),
+        ] {
+            let one_a = if header.to_lowercase().contains("ma") {
+                1e3
+            } else {
+                1.0
+            };
+            let text = format!("{header}\n0,0\n{},{}\n", 2.0 * one_a, 20.0 * one_lpm);
+            let curve = read_text(&text).expect("a curve");
+            let flow_m3_s = curve.flow_m3_s(2.0);
+            assert!(
+                (flow_m3_s / (20.0 * 1e-3 / 60.0) - 1.0).abs() < 1e-12,
+                "{header}"
+            );
         }
     }
 

@@ -9,8 +9,7 @@ use hitch_plant::{LinkageTable, LinkageTableError};
 use super::number_table::{NumberTable, Wanted};
 
 const EXAMPLE: &str = "travel_mm,angle_deg,height_mm";
-const LENGTHS: &[(&str, f64)] = &[("mm", 1e-3), ("cm", 1e-2), ("m", 1.0)];
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
+const LENGTHS: &[&str] = &["mm", "cm", "m"];
 
 const COLUMNS: [Wanted; 3] = [
     Wanted {
@@ -23,7 +22,7 @@ const COLUMNS: [Wanted; 3] = [
     Wanted {
         quantity: "angle",
         words: &["angle", "winkel"],
-        units: &[("deg", DEGREE), ("\u{b0}", DEGREE), ("rad", 1.0)],
+        units: &["deg", "rad"],
         offered: "deg or rad",
         example: EXAMPLE,
     },

@@ -3,6 +3,7 @@
 use hitch_campaign::survey::{LogColumn, text_table};
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::source_file::SourceFile;
+use hitch_input::written_unit::{parsed, spelling};
 
 /// A column that a table has to have.
 pub struct Wanted {
@@ -10,8 +11,8 @@ pub struct Wanted {
     pub quantity: &'static str,
     /// Words in its name; none if the unit identifies it.
     pub words: &'static [&'static str],
-    /// Its units in lower case, with their size in SI.
-    pub units: &'static [(&'static str, f64)],
+    /// Its units.
+    pub units: &'static [&'static str],
     /// The units, for messages.
     pub offered: &'static str,
     /// Example of a header.
@@ -71,16 +72,17 @@ fn column<'c>(columns: &'c [LogColumn], wanted: &Wanted) -> Option<(&'c LogColum
     named.find_map(|column| Some((column, unit(column, wanted.units)?)))
 }
 
-/// Size of a column's unit in SI; `None` for unknown units.
-fn unit(column: &LogColumn, units: &[(&str, f64)]) -> Option<f64> {
-    let written = column.unit.as_ref().map(|unit| unit.to_lowercase());
-    let name = column.name.to_lowercase();
-    let is_of = |unit: &str| match &written {
-        Some(written) => written == unit,
-        None => name.ends_with(&format!("_{unit}")),
+/// Size of a column's unit in SI; `None` for unknown units. Without a written unit it is the end of the name: `flow_l_min`.
+fn unit(column: &LogColumn, units: &[&str]) -> Option<f64> {
+    let size = |text: &str| {
+        let name = spelling(text);
+        let is_wanted = units.contains(&name);
+        parsed(name).filter(|_| is_wanted).map(|unit| unit.si)
     };
-    units
-        .iter()
-        .find(|(unit, _)| is_of(unit))
-        .map(|(_, si)| *si)
+    if let Some(written) = &column.unit {
+        return size(&written.to_lowercase());
+    }
+    let name = column.name.to_lowercase().replace('_', "/");
+    name.match_indices('/')
+        .find_map(|(at, _)| size(&name[at + 1..]))
 }

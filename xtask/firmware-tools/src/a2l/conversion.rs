@@ -1,57 +1,36 @@
 //! Conversions between raw counts and units, and names of codes.
 
-use std::fmt::Write as _;
-
+use a2lfile::{
+    A2lObjectName as _, Coeffs, CompuMethod, CompuTabRef, CompuVtab, ConversionType, DefaultValue,
+    Module, ValuePairsStruct,
+};
 use hitch_protocols::xcp::measurements::MeasurementInfo;
 use hitch_protocols::xcp::pages::Applied;
 use hitch_quantities::{Fault, Reason, State, Trip, Trouble};
 
-/// Display of raw values.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Conversion {
-    name: String,
-    kind: Kind,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Kind {
-    /// Counts in a unit.
-    Scaled { unit: &'static str, per_unit: i32 },
-    /// The unit itself, in single precision.
-    Float { unit: &'static str },
-    /// Names of codes.
-    Named(Vec<(u8, String)>),
-}
-
 /// The name of the conversion from counts; it is added if it is new.
-pub fn scaled(conversions: &mut Vec<Conversion>, suffix: &str, per_unit: i32) -> String {
-    let unit = unit(suffix);
+pub fn scaled(module: &mut Module, suffix: &str, per_unit: i32) -> String {
     let name = match suffix {
         "" => "number".to_owned(),
         _ => format!("{suffix}_{per_unit}"),
     };
-    add(
-        conversions,
-        Conversion {
-            name,
-            kind: Kind::Scaled { unit, per_unit },
-        },
-    )
+    let decimals = per_unit.ilog10();
+    let mut method = method(name, ConversionType::RatFunc, decimals, unit(suffix));
+    method.coeffs = Some(Coeffs::new(0.0, f64::from(per_unit), 0.0, 0.0, 0.0, 1.0));
+    add(module, method)
 }
 
 /// The name of the identity conversion of a single-precision number.
-fn float(conversions: &mut Vec<Conversion>, suffix: &str) -> String {
+fn float(module: &mut Module, suffix: &str) -> String {
+    let name = format!("{suffix}_float");
     add(
-        conversions,
-        Conversion {
-            name: format!("{suffix}_float"),
-            kind: Kind::Float { unit: unit(suffix) },
-        },
+        module,
+        method(name, ConversionType::Identical, 6, unit(suffix)),
     )
 }
 
 /// The name of the conversion of a measurement.
-pub fn of_measurement(conversions: &mut Vec<Conversion>, info: &MeasurementInfo) -> String {
+pub fn of_measurement(module: &mut Module, info: &MeasurementInfo) -> String {
     let names = match info.name {
         "state" => State::ALL
             .iter()
@@ -68,16 +47,28 @@ pub fn of_measurement(conversions: &mut Vec<Conversion>, info: &MeasurementInfo)
         "calibration_state" => [Applied::InUse, Applied::Pending, Applied::Inconsistent]
             .map(|applied| (applied as u8, format!("{applied:?}")))
             .to_vec(),
-        _ if info.is_float => return float(conversions, info.suffix),
-        _ => return scaled(conversions, info.suffix, info.counts_per_unit),
+        _ if info.is_float => return float(module, info.suffix),
+        _ => return scaled(module, info.suffix, info.counts_per_unit),
     };
-    add(
-        conversions,
-        Conversion {
-            name: format!("{}_names", info.name),
-            kind: Kind::Named(names),
-        },
-    )
+    let name = format!("{}_names", info.name);
+    let mut method = method(name.clone(), ConversionType::TabVerb, 0, "");
+    method.compu_tab_ref = Some(CompuTabRef::new(format!("{name}_table")));
+    module
+        .compu_vtab
+        .push(table(format!("{name}_table"), names));
+    add(module, method)
+}
+
+/// The names of codes.
+fn table(name: String, names: Vec<(u8, String)>) -> CompuVtab {
+    let count = u16::try_from(names.len()).unwrap_or(u16::MAX);
+    let mut table = CompuVtab::new(name, String::new(), ConversionType::TabVerb, count);
+    let pairs = names.into_iter();
+    table.value_pairs = pairs
+        .map(|(code, name)| ValuePairsStruct::new(code.into(), name))
+        .collect();
+    table.default_value = Some(DefaultValue::new("unknown".to_owned()));
+    table
 }
 
 fn none_and<const N: usize>(names: [(u8, String); N]) -> Vec<(u8, String)> {
@@ -86,10 +77,20 @@ fn none_and<const N: usize>(names: [(u8, String); N]) -> Vec<(u8, String)> {
         .collect()
 }
 
-fn add(conversions: &mut Vec<Conversion>, conversion: Conversion) -> String {
-    let name = conversion.name.clone();
-    if !conversions.contains(&conversion) {
-        conversions.push(conversion);
+fn method(name: String, kind: ConversionType, decimals: u32, unit: &str) -> CompuMethod {
+    CompuMethod::new(
+        name,
+        String::new(),
+        kind,
+        format!("%12.{decimals}"),
+        unit.to_owned(),
+    )
+}
+
+fn add(module: &mut Module, method: CompuMethod) -> String {
+    let name = method.get_name().to_owned();
+    if !module.compu_method.contains_key(&name) {
+        module.compu_method.push(method);
     }
     name
 }
@@ -125,34 +126,5 @@ fn unit(suffix: &str) -> &'static str {
         "per_s" => "1/s",
         "count" | "" => "",
         _ => panic!("no unit is written down for `{suffix}`"),
-    }
-}
-
-impl Conversion {
-    /// Its definition in the file.
-    pub fn definition(&self) -> String {
-        let Self { name, kind } = self;
-        match kind {
-            Kind::Scaled { unit, per_unit } => {
-                let decimals = per_unit.ilog10();
-                format!(
-                    "/begin COMPU_METHOD {name} \"\" RAT_FUNC \"%12.{decimals}\" \"{unit}\"\n  COEFFS 0 {per_unit} 0 0 0 1\n/end COMPU_METHOD\n"
-                )
-            }
-            Kind::Float { unit } => format!(
-                "/begin COMPU_METHOD {name} \"\" IDENTICAL \"%12.6\" \"{unit}\"\n/end COMPU_METHOD\n"
-            ),
-            Kind::Named(names) => {
-                let mut text = format!(
-                    "/begin COMPU_METHOD {name} \"\" TAB_VERB \"%12.0\" \"\"\n  COMPU_TAB_REF {name}_table\n/end COMPU_METHOD\n\
-                     /begin COMPU_VTAB {name}_table \"\" TAB_VERB {}\n",
-                    names.len()
-                );
-                for (code, name) in names {
-                    let _ = writeln!(text, "  {code} \"{name}\"");
-                }
-                text + "  DEFAULT_VALUE \"unknown\"\n/end COMPU_VTAB\n"
-            }
-        }
     }
 }

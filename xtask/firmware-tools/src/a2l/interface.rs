@@ -1,102 +1,57 @@
-//! The interface of a tool to the ECU: XCP on CAN, with the used part of its description language (AML).
+//! The interface of a tool to the ECU: XCP on CAN, with the used part of its description language (AML, after ASAM's for XCP 1.4).
 
-use std::fmt::Write as _;
-
+use a2lfile::A2lFile;
+use anyhow::{Context as _, Result, ensure};
 use hitch_protocols::j1939::{Id, PREFERRED_ADDRESS, Pgn};
+use hitch_protocols::xcp::map::{CALIBRATION_BASE, IDENTITY, IDENTITY_BASE};
 use hitch_protocols::xcp::{Event, TOOL_ADDRESS};
+use hitch_quantities::calibration::CALIBRATION_BYTES;
 
-/// Definition of the blocks below, after ASAM's AML for XCP 1.4.
-pub const AML: &str = include_str!("xcp.aml");
-
-/// The pages of the calibration.
-pub const PAGES: &str = "    \
-/begin IF_DATA XCP
-      /begin SEGMENT 0 2 0 0 0
-        /begin CHECKSUM XCP_CRC_32 MAX_BLOCK_SIZE 0x4000 /end CHECKSUM
-        /begin PAGE 0 ECU_ACCESS_DONT_CARE XCP_READ_ACCESS_DONT_CARE XCP_WRITE_ACCESS_DONT_CARE /end PAGE
-        /begin PAGE 1 ECU_ACCESS_DONT_CARE XCP_READ_ACCESS_DONT_CARE XCP_WRITE_ACCESS_NOT_ALLOWED /end PAGE
-      /end SEGMENT
-    /end IF_DATA
-";
-
-/// Optional commands that the slave supports.
-const OPTIONAL_COMMANDS: [&str; 31] = [
-    "GET_COMM_MODE_INFO",
-    "GET_ID",
-    "SET_REQUEST",
-    "GET_SEED",
-    "SET_MTA",
-    "UPLOAD",
-    "SHORT_UPLOAD",
-    "BUILD_CHECKSUM",
-    "DOWNLOAD",
-    "DOWNLOAD_MAX",
-    "SET_CAL_PAGE",
-    "GET_CAL_PAGE",
-    "GET_PAG_PROCESSOR_INFO",
-    "GET_SEGMENT_INFO",
-    "GET_PAGE_INFO",
-    "COPY_CAL_PAGE",
-    "SET_DAQ_PTR",
-    "WRITE_DAQ",
-    "SET_DAQ_LIST_MODE",
-    "GET_DAQ_LIST_MODE",
-    "START_STOP_DAQ_LIST",
-    "START_STOP_SYNCH",
-    "GET_DAQ_CLOCK",
-    "READ_DAQ",
-    "GET_DAQ_PROCESSOR_INFO",
-    "GET_DAQ_RESOLUTION_INFO",
-    "GET_DAQ_EVENT_INFO",
-    "FREE_DAQ",
-    "ALLOC_DAQ",
-    "ALLOC_ODT",
-    "ALLOC_ODT_ENTRY",
-];
+/// What no table of the firmware changes, with marks where one gives a value.
+const FIXED: &str = include_str!("fixed.a2l");
 
 /// Bit of an identifier that marks 29 bits.
 const EXTENDED: u32 = 0x8000_0000;
 
-/// Protocol layer, measuring, pages and transport.
-pub fn text() -> String {
-    let mut commands = String::new();
-    for command in OPTIONAL_COMMANDS {
-        let _ = writeln!(commands, "    OPTIONAL_CMD {command}");
-    }
-    let mut events = String::new();
-    for event in Event::ALL {
+/// A file with memory, layouts of records, and interface; without parameters and measurements.
+pub fn file() -> Result<A2lFile> {
+    let events = Event::ALL.map(|event| {
         let period = event.period_ms();
-        let _ = writeln!(
-            events,
+        format!(
             "    /begin EVENT \"{period} ms\" \"{period} ms\" {} DAQ 0xFF {period} 6 0 /end EVENT",
             event as u8
-        );
-    }
-    format!(
-        "/begin IF_DATA XCP\n  \
-         /begin PROTOCOL_LAYER 0x0104 2000 2000 2000 2000 2000 2000 2000 8 8 BYTE_ORDER_MSB_LAST ADDRESS_GRANULARITY_BYTE\n\
-         {commands}  /end PROTOCOL_LAYER\n  \
-         /begin DAQ DYNAMIC 4 {event_count} 0 OPTIMISATION_TYPE_DEFAULT ADDRESS_EXTENSION_FREE\n    \
-         IDENTIFICATION_FIELD_TYPE_ABSOLUTE GRANULARITY_ODT_ENTRY_SIZE_DAQ_BYTE 7 OVERLOAD_INDICATION_EVENT\n    \
-         PRESCALER_SUPPORTED\n    \
-         /begin TIMESTAMP_SUPPORTED 1 SIZE_DWORD UNIT_1US /end TIMESTAMP_SUPPORTED\n\
-         {events}  /end DAQ\n  \
-         /begin PAG 1 /end PAG\n  \
-         /begin XCP_ON_CAN 0x0100\n    CAN_ID_MASTER 0x{to_ecu:08X}\n    CAN_ID_SLAVE 0x{from_ecu:08X}\n    BAUDRATE 250000\n  \
-         /end XCP_ON_CAN\n/end IF_DATA\n",
-        event_count = Event::ALL.len(),
-        to_ecu = identifier(TOOL_ADDRESS, PREFERRED_ADDRESS),
-        from_ecu = identifier(PREFERRED_ADDRESS, TOOL_ADDRESS),
-    )
+        )
+    });
+    let values = [
+        (
+            "{identity}",
+            String::from_utf8_lossy(&IDENTITY).into_owned(),
+        ),
+        ("{identity_address}", format!("0x{IDENTITY_BASE:08X}")),
+        (
+            "{calibration}",
+            format!("0x{CALIBRATION_BASE:08X} 0x{CALIBRATION_BYTES:X}"),
+        ),
+        ("{event_count}", events.len().to_string()),
+        ("{events}", events.join("\n")),
+        ("{to_ecu}", identifier(TOOL_ADDRESS, PREFERRED_ADDRESS)),
+        ("{from_ecu}", identifier(PREFERRED_ADDRESS, TOOL_ADDRESS)),
+    ];
+    let text = values.iter().fold(FIXED.to_owned(), |text, (mark, value)| {
+        text.replace(mark, value)
+    });
+    let (file, remarks) = a2lfile::load_from_string(&text, None, true).context("fixed.a2l")?;
+    ensure!(remarks.is_empty(), "fixed.a2l: {remarks:?}");
+    Ok(file)
 }
 
 /// Identifier of a packet from `source` to `destination`.
-fn identifier(source: u8, destination: u8) -> u32 {
+fn identifier(source: u8, destination: u8) -> String {
     let id = Id {
         priority: 6,
         pgn: Pgn::PROPRIETARY_A,
         destination,
         source,
     };
-    id.pack().as_raw() | EXTENDED
+    format!("0x{:08X}", id.pack().as_raw() | EXTENDED)
 }

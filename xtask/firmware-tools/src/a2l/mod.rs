@@ -7,25 +7,23 @@
 mod conversion;
 mod interface;
 
-use std::fmt::Write as _;
 use std::fs;
 
+use a2lfile::{
+    A2lObject as _, A2lObjectName as _, AxisDescr, AxisDescrAttribute, Characteristic,
+    CharacteristicType, DataType, EcuAddress, Group, MatrixDim, Measurement, Module, Monotony,
+    MonotonyType, RefCharacteristic, RefMeasurement, Root,
+};
 use anyhow::{Context, Result};
 use arm_build::workspace;
-use hitch_protocols::xcp::map::{
-    CALIBRATION_BASE, IDENTITY, IDENTITY_BASE, MEASUREMENT_BASE, SLOT_BYTES,
-};
+use hitch_protocols::xcp::map::{CALIBRATION_BASE, MEASUREMENT_BASE, SLOT_BYTES};
 use hitch_protocols::xcp::measurements::{self, MeasurementInfo, Width};
-use hitch_quantities::calibration::CALIBRATION_BYTES;
 use hitch_quantities::calibration::calibration_words::{
     GROUPS, LIFT_WORD, LINKAGE_WORD, LONGEST_TRAVEL, LOWER_WORD, SCALARS_WORD, word_range,
 };
 use hitch_quantities::calibration::class::{Class, Tightening};
 use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
-use hitch_quantities::calibration::parameter::ParameterInfo;
 use hitch_quantities::calibration::valve_table::VALVE_POINTS;
-
-use conversion::Conversion;
 
 /// Path of the file.
 const FILE: &str = "firmware/hitch.a2l";
@@ -33,53 +31,32 @@ const FILE: &str = "firmware/hitch.a2l";
 /// Writes the file.
 pub fn write() -> Result<()> {
     let path = workspace::root().join(FILE);
-    fs::write(&path, text()).with_context(|| format!("can't write {}", path.display()))?;
+    fs::write(&path, text()?).with_context(|| format!("can't write {}", path.display()))?;
     println!("{FILE} is up to date");
     Ok(())
 }
 
 /// Contents of the file.
-fn text() -> String {
-    let mut conversions = Vec::new();
-    let body = [
-        parameters(&mut conversions),
-        measurements(&mut conversions),
-        groups(),
-    ]
-    .concat();
-    let conversions: String = conversions.iter().map(Conversion::definition).collect();
-    format!(
-        "/* Written by `cargo xtask a2l` from the tables of the firmware: don't edit. */\n\
-         ASAP2_VERSION 1 71\n\
-         /begin PROJECT hitch \"Electro-hydraulic three-point hitch\"\n\
-         /begin MODULE ecu \"Hitch controller\"\n\n\
-         {aml}\n{memory}\n{interface}\n{LAYOUTS}\n{conversions}\n{body}\
-         /end MODULE\n/end PROJECT\n",
-        aml = interface::AML,
-        memory = memory(),
-        interface = interface::text(),
-    )
-}
-
-/// Storage of parameters: words, and the tables of the valves and of the linkage.
-const LAYOUTS: &str = "\
-/begin RECORD_LAYOUT word FNC_VALUES 1 SLONG COLUMN_DIR DIRECT /end RECORD_LAYOUT
-/begin RECORD_LAYOUT valve
-  NO_AXIS_PTS_X 1 ULONG
-  AXIS_PTS_X 2 SLONG INDEX_INCR DIRECT
-  FNC_VALUES 3 SLONG ALTERNATE_WITH_X DIRECT
-/end RECORD_LAYOUT
-";
-
-fn memory() -> String {
-    let identity = String::from_utf8_lossy(&IDENTITY);
-    format!(
-        "/begin MOD_COMMON \"\"\n  BYTE_ORDER MSB_LAST\n  ALIGNMENT_LONG 4\n/end MOD_COMMON\n\
-         /begin MOD_PAR \"\"\n  EPK \"{identity}\"\n  ADDR_EPK 0x{IDENTITY_BASE:08X}\n  \
-         /begin MEMORY_SEGMENT calibration \"working page in RAM, reference page in flash\" DATA FLASH INTERN \
-         0x{CALIBRATION_BASE:08X} 0x{CALIBRATION_BYTES:X} -1 -1 -1 -1 -1\n{pages}  /end MEMORY_SEGMENT\n/end MOD_PAR\n",
-        pages = interface::PAGES,
-    )
+fn text() -> Result<String> {
+    let mut file = interface::file()?;
+    let module = &mut file.project.module[0];
+    valve(
+        module,
+        "lift",
+        "Lift valve at the compensated drop",
+        LIFT_WORD,
+    );
+    valve(
+        module,
+        "lower",
+        "Lowering valve at hydraulics.reference_drop",
+        LOWER_WORD,
+    );
+    linkage(module);
+    scalars(module);
+    groups(module);
+    measurements(module);
+    Ok(file.write_to_string())
 }
 
 /// Address of a word of the calibration.
@@ -87,206 +64,198 @@ fn word_address(word: usize) -> u32 {
     CALIBRATION_BASE + SLOT_BYTES * u32::try_from(word).unwrap_or(u32::MAX / SLOT_BYTES)
 }
 
-/// A text in quotes.
-fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.trim().replace('"', "\\\""))
-}
-
 /// A number of raw counts in its unit.
 fn physical(counts: i32, per_unit: i32) -> f64 {
     f64::from(counts) / f64::from(per_unit)
 }
 
-fn parameters(conversions: &mut Vec<Conversion>) -> String {
-    let mut text = String::new();
-    valve(
-        &mut text,
-        "lift",
-        "Lift valve at the compensated drop",
-        LIFT_WORD,
-        conversions,
-    );
-    let lower = "Lowering valve at hydraulics.reference_drop";
-    valve(&mut text, "lower", lower, LOWER_WORD, conversions);
-    linkage(&mut text, conversions);
-    let mut word = SCALARS_WORD;
-    for group in &GROUPS {
-        for parameter in group.parameters {
-            scalar(
-                &mut text,
-                group.name,
-                parameter,
-                class_of_word(word),
-                word,
-                conversions,
-            );
-            word += 1;
-        }
-    }
-    text
-}
-
-fn class_of_word(word: usize) -> Class {
-    word_range(word).map_or(Class::Machine, |range| range.class)
-}
-
-fn scalar(
-    text: &mut String,
-    group: &str,
-    parameter: &ParameterInfo,
-    class: Class,
+/// A parameter of words from `word` on, `range` in the unit of `conversion`.
+fn characteristic(
+    name: String,
+    what: String,
+    kind: CharacteristicType,
     word: usize,
-    conversions: &mut Vec<Conversion>,
-) {
-    let per_unit = parameter.counts_per_unit;
-    let when = match class {
-        Class::Live => "",
-        Class::Machine => " (Changed at rest only.)",
-        Class::Safety(Tightening::Up) => {
-            " (Safety: changed at rest only, reduced with the key only.)"
-        }
-        Class::Safety(Tightening::Down) => {
-            " (Safety: changed at rest only, increased with the key only.)"
-        }
-        Class::Safety(Tightening::None) => " (Safety: changed at rest and with the key only.)",
+    conversion: String,
+    range: [f64; 2],
+) -> Characteristic {
+    let layout = match kind {
+        CharacteristicType::Curve => "valve",
+        _ => "word",
     };
-    let _ = write!(
-        text,
-        "/begin CHARACTERISTIC {group}.{name}\n  {reason}\n  VALUE 0x{address:08X} word 0 {conversion} {min} {max}\n/end CHARACTERISTIC\n",
-        name = parameter.name,
-        reason = quoted(&format!("{}{when}", parameter.reason.trim())),
-        address = word_address(word),
-        conversion = conversion::scaled(conversions, parameter.suffix, per_unit),
-        min = physical(parameter.min, per_unit),
-        max = physical(parameter.max, per_unit),
-    );
+    let address = word_address(word);
+    let [min, max] = range;
+    let layout = layout.to_owned();
+    let mut made =
+        Characteristic::new(name, what, kind, address, layout, 0.0, conversion, min, max);
+    made.get_layout_mut().item_location.3.1 = true;
+    made
+}
+
+fn scalars(module: &mut Module) {
+    let parameters = GROUPS
+        .iter()
+        .flat_map(|group| group.parameters.iter().map(move |one| (group.name, one)));
+    for (word, (group, parameter)) in (SCALARS_WORD..).zip(parameters) {
+        let when = match word_range(word).map_or(Class::Machine, |range| range.class) {
+            Class::Live => "",
+            Class::Machine => " (Changed at rest only.)",
+            Class::Safety(Tightening::Up) => {
+                " (Safety: changed at rest only, reduced with the key only.)"
+            }
+            Class::Safety(Tightening::Down) => {
+                " (Safety: changed at rest only, increased with the key only.)"
+            }
+            Class::Safety(Tightening::None) => " (Safety: changed at rest and with the key only.)",
+        };
+        let per_unit = parameter.counts_per_unit;
+        let conversion = conversion::scaled(module, parameter.suffix, per_unit);
+        module.characteristic.push(characteristic(
+            format!("{group}.{}", parameter.name),
+            format!("{}{when}", parameter.reason.trim())
+                .trim()
+                .to_owned(),
+            CharacteristicType::Value,
+            word,
+            conversion,
+            [parameter.min, parameter.max].map(|counts| physical(counts, per_unit)),
+        ));
+    }
 }
 
 /// Current over flow, preceded by the number of points.
-fn valve(
-    text: &mut String,
-    name: &str,
-    what: &str,
-    word: usize,
-    conversions: &mut Vec<Conversion>,
-) {
-    let flow = conversion::scaled(conversions, "ul_per_s", 1);
-    let current = conversion::scaled(conversions, "a", 1_000);
-    let _ = write!(
-        text,
-        "/begin CHARACTERISTIC {name}.current\n  {what}\n  CURVE 0x{address:08X} valve 0 {current} 0 5\n  \
-         /begin AXIS_DESCR STD_AXIS NO_INPUT_QUANTITY {flow} {VALVE_POINTS} 0 10000000\n    MONOTONY STRICT_INCREASE\n  \
-         /end AXIS_DESCR\n/end CHARACTERISTIC\n",
-        what = quoted(&format!(
+fn valve(module: &mut Module, name: &str, what: &str, word: usize) {
+    let flow = conversion::scaled(module, "ul_per_s", 1);
+    let current = conversion::scaled(module, "a", 1_000);
+    let mut curve = characteristic(
+        format!("{name}.current"),
+        format!(
             "{what}: current over flow, from the threshold to saturation. Flows are at least 0.25 % of the largest one apart. (Changed at rest only.)"
-        )),
-        address = word_address(word),
+        ),
+        CharacteristicType::Curve,
+        word,
+        current,
+        [0.0, 5.0],
     );
+    let points = u16::try_from(VALVE_POINTS).unwrap_or(u16::MAX);
+    let none = "NO_INPUT_QUANTITY".to_owned();
+    let mut axis = AxisDescr::new(AxisDescrAttribute::StdAxis, none, flow, points, 0.0, 1e7);
+    axis.monotony = Some(Monotony::new(MonotonyType::StrictIncrease));
+    curve.axis_descr.push(axis);
+    module.characteristic.push(curve);
 }
 
-fn linkage(text: &mut String, conversions: &mut Vec<Conversion>) {
-    let angle = conversion::scaled(conversions, "deg", 1_000);
-    let travel = conversion::scaled(conversions, "mm", 1_000);
-    let axis = [
+fn linkage(module: &mut Module) {
+    let angle = conversion::scaled(module, "deg", 1_000);
+    let travel = conversion::scaled(module, "mm", 1_000);
+    let longest = physical(LONGEST_TRAVEL, 1_000);
+    let (value, block) = (CharacteristicType::Value, CharacteristicType::ValBlk);
+    let parts = [
         (
             "first_angle",
-            "Angle of the first point of the linkage's table",
-            -360.0,
+            "Angle of the first point of the linkage's table.",
+            value,
+            &angle,
+            [-360.0, 360.0],
         ),
         (
             "angle_step",
-            "Angle from point to point of the linkage's table",
-            0.001,
+            "Angle from point to point of the linkage's table.",
+            value,
+            &angle,
+            [0.001, 360.0],
         ),
-    ];
-    for (word, (name, what, min)) in (LINKAGE_WORD..).zip(axis) {
-        let address = word_address(word);
-        let _ = write!(
-            text,
-            "/begin CHARACTERISTIC linkage.{name}\n  {what}\n  VALUE 0x{address:08X} word 0 {angle} {min} 360\n/end CHARACTERISTIC\n",
-            what = quoted(&format!("{what}. (Changed at rest only.)")),
-        );
-    }
-    let most = physical(LONGEST_TRAVEL, 1_000);
-    let _ = write!(
-        text,
-        "/begin CHARACTERISTIC linkage.travel\n  \"Piston travel at each point of the linkage's table, strictly rising. (Changed at rest only.)\"\n  \
-         VAL_BLK 0x{address:08X} word 0 {travel} -{most} {most}\n  MATRIX_DIM {LINKAGE_POINTS}\n/end CHARACTERISTIC\n",
-        address = word_address(LINKAGE_WORD + 2),
-    );
-}
-
-fn measurements(conversions: &mut Vec<Conversion>) -> String {
-    let mut text = String::new();
-    for (slot, info) in (0..).zip(measurements::INFO) {
-        let conversion = conversion::of_measurement(conversions, info);
-        let _ = write!(
-            text,
-            "/begin MEASUREMENT {name}\n  {description}\n  {width} {conversion} 0 0 {min} {max}\n  ECU_ADDRESS 0x{address:08X}\n/end MEASUREMENT\n",
-            name = info.name,
-            description = quoted(info.description),
-            width = width(info),
-            min = physical(info.min, info.counts_per_unit),
-            max = physical(info.max, info.counts_per_unit),
-            address = MEASUREMENT_BASE + SLOT_BYTES * slot,
-        );
-    }
-    text
-}
-
-const fn width(info: &MeasurementInfo) -> &'static str {
-    match info.width {
-        _ if info.is_float => "FLOAT32_IEEE",
-        Width::U8 => "UBYTE",
-        Width::U16 => "UWORD",
-        Width::I16 => "SWORD",
-        Width::U32 => "ULONG",
-        Width::I32 => "SLONG",
-    }
-}
-
-/// Parameters as in the sections of a calibration file.
-fn groups() -> String {
-    let tables = [
-        ("lift", "lift.current".to_owned()),
-        ("lower", "lower.current".to_owned()),
         (
-            "linkage",
-            "linkage.first_angle linkage.angle_step linkage.travel".to_owned(),
+            "travel",
+            "Piston travel at each point of the linkage's table, strictly rising.",
+            block,
+            &travel,
+            [-longest, longest],
         ),
     ];
-    let scalars = GROUPS.iter().map(|group| {
-        let names = group.parameters.iter();
-        let names: Vec<String> = names
-            .map(|parameter| format!("{}.{}", group.name, parameter.name))
-            .collect();
-        (group.name, names.join(" "))
-    });
-    let mut text = String::new();
-    for (name, members) in tables.into_iter().chain(scalars) {
-        let _ = write!(
-            text,
-            "/begin GROUP {name} \"\" ROOT\n  /begin REF_CHARACTERISTIC {members} /end REF_CHARACTERISTIC\n/end GROUP\n"
-        );
+    for (word, (name, what, kind, conversion, range)) in (LINKAGE_WORD..).zip(parts) {
+        let name = format!("linkage.{name}");
+        let what = format!("{what} (Changed at rest only.)");
+        let mut part = characteristic(name, what, kind, word, conversion.clone(), range);
+        if kind == block {
+            let mut points = MatrixDim::new();
+            points
+                .dim_list
+                .push(u16::try_from(LINKAGE_POINTS).unwrap_or(u16::MAX));
+            part.matrix_dim = Some(points);
+        }
+        module.characteristic.push(part);
     }
-    let names: Vec<&str> = measurements::INFO.iter().map(|info| info.name).collect();
-    let _ = write!(
-        text,
-        "/begin GROUP measurements \"\" ROOT\n  /begin REF_MEASUREMENT {} /end REF_MEASUREMENT\n/end GROUP\n",
-        names.join(" ")
-    );
-    text
+}
+
+fn measurements(module: &mut Module) {
+    for (slot, info) in (0..).zip(measurements::INFO) {
+        let conversion = conversion::of_measurement(module, info);
+        let [min, max] = [info.min, info.max].map(|counts| physical(counts, info.counts_per_unit));
+        let (name, what) = (info.name.to_owned(), info.description.trim().to_owned());
+        let mut made = Measurement::new(name, what, width(info), conversion, 0, 0.0, min, max);
+        let mut address = EcuAddress::new(MEASUREMENT_BASE + SLOT_BYTES * slot);
+        address.get_layout_mut().item_location.0.1 = true;
+        made.ecu_address = Some(address);
+        module.measurement.push(made);
+    }
+    let mut group = root("measurements");
+    let mut members = RefMeasurement::new();
+    members.identifier_list = measurements::INFO
+        .iter()
+        .map(|info| info.name.to_owned())
+        .collect();
+    group.ref_measurement = Some(members);
+    module.group.push(group);
+}
+
+const fn width(info: &MeasurementInfo) -> DataType {
+    match info.width {
+        _ if info.is_float => DataType::Float32Ieee,
+        Width::U8 => DataType::Ubyte,
+        Width::U16 => DataType::Uword,
+        Width::I16 => DataType::Sword,
+        Width::U32 => DataType::Ulong,
+        Width::I32 => DataType::Slong,
+    }
+}
+
+/// Parameters as in the sections of a calibration file: what stands before the dot of their names.
+fn groups(module: &mut Module) {
+    for characteristic in module.characteristic.iter() {
+        let name = characteristic.get_name();
+        let section = name.split('.').next().unwrap_or(name);
+        if !module.group.contains_key(section) {
+            let mut group = root(section);
+            group.ref_characteristic = Some(RefCharacteristic::new());
+            module.group.push(group);
+        }
+        if let Some(members) = module
+            .group
+            .get_mut(section)
+            .and_then(|group| group.ref_characteristic.as_mut())
+        {
+            members.identifier_list.push(name.to_owned());
+        }
+    }
+}
+
+fn root(name: &str) -> Group {
+    let mut group = Group::new(name.to_owned(), String::new());
+    group.root = Some(Root::new());
+    group
 }
 
 #[cfg(test)]
 mod tests {
-    use a2lfile::{A2lFile, A2lObjectName as _};
+    use a2lfile::A2lFile;
 
     use super::*;
 
     /// The file as another program reads it, to the letter of the standard.
     fn parsed() -> A2lFile {
-        let (file, remarks) = a2lfile::load_from_string(&text(), None, true).expect("an A2L file");
+        let (file, remarks) =
+            a2lfile::load_from_string(&text().expect("a description"), None, true)
+                .expect("an A2L file");
         assert!(remarks.is_empty(), "{remarks:?}");
         file
     }
@@ -295,7 +264,7 @@ mod tests {
     fn the_file_in_the_project_is_what_the_tables_say() {
         let kept = fs::read_to_string(workspace::root().join(FILE)).expect("the file is there");
         assert!(
-            kept == text(),
+            kept == text().expect("a description"),
             "{FILE} is out of date: run `cargo xtask a2l`"
         );
     }
@@ -338,7 +307,7 @@ mod tests {
         let file = parsed();
         let module = &file.project.module[0];
         let noise = module.measurement.get("angle_noise").expect("it is there");
-        assert_eq!(noise.datatype, a2lfile::DataType::Float32Ieee);
+        assert_eq!(noise.datatype, DataType::Float32Ieee);
         let conversion = module.compu_method.get(&noise.conversion).unwrap();
         assert_eq!(
             conversion.conversion_type,
