@@ -1,6 +1,6 @@
 //! Builds the page that has controller and plant inside: one file, without server and network.
 //!
-//! [`module`] compiles `hitch-try-page` to WebAssembly, and [`page`] joins it with the scripts, styles and the section of
+//! `module` compiles `hitch-try-page` to WebAssembly, and `page` joins it with the scripts, styles and the section of
 //! the closed loop of `hitch serve`.
 #![forbid(unsafe_code)]
 
