@@ -85,9 +85,10 @@ fn answers(arguments: &Arguments, family: Family, plan: Plan, bar: &ProgressBar)
     let seeds = arguments.seed..arguments.seed + arguments.count;
     let answers = seeds.map(|seed| {
         let posed = Posed::new(draw(seed, &arguments.wish.wish(family, plan)));
-        let declared = match arguments.wrong_base {
-            true => declared_within(family, seed, arguments.base_error),
-            false => starting_point(family),
+        let declared = if arguments.wrong_base {
+            declared_within(family, seed, arguments.base_error)
+        } else {
+            starting_point(family)
         };
         bar.set_message(format!("{family:?} {plan:?} {seed}"));
         let graded = posed.ask_about(&declared);

@@ -140,10 +140,7 @@ fn main() -> anyhow::Result<()> {
 }
 
 fn kind_of(structured: bool) -> &'static str {
-    match structured {
-        true => "structured",
-        false => "textbook",
-    }
+    if structured { "structured" } else { "textbook" }
 }
 
 fn lifts(case: &Case) -> bool {

@@ -18,9 +18,10 @@ pub fn run(command: &mut Command) -> Result<String> {
     let said =
         [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
     let said = said.concat();
-    match output.status.success() {
-        true => Ok(said),
-        false => bail!("{command:?}: {}\n{said}", output.status),
+    if output.status.success() {
+        Ok(said)
+    } else {
+        bail!("{command:?}: {}\n{said}", output.status)
     }
 }
 

@@ -127,9 +127,10 @@ impl ShownConstant {
     /// The mark of a constant that [`ShownConstant::is_beyond`]; else empty.
     #[must_use]
     pub fn mark(&self) -> &'static str {
-        match self.is_beyond() {
-            true => "beyond its tolerance",
-            false => "",
+        if self.is_beyond() {
+            "beyond its tolerance"
+        } else {
+            ""
         }
     }
 
@@ -140,9 +141,10 @@ impl ShownConstant {
             self.name.clone(),
             digits(self.declared),
             digits(self.fitted),
-            match self.low.is_nan() {
-                true => "withheld".to_owned(),
-                false => format!("{} to {}", digits(self.low), digits(self.high)),
+            if self.low.is_nan() {
+                "withheld".to_owned()
+            } else {
+                format!("{} to {}", digits(self.low), digits(self.high))
             },
             self.unit.to_owned(),
             self.mark().to_owned(),
@@ -211,9 +213,10 @@ impl fmt::Display for ShownBaseFit {
                 digits(point.declared_lpm),
                 digits(point.fitted_lpm),
                 format!("{} to {}", digits(point.low_lpm), digits(point.high_lpm)),
-                match point.determined {
-                    true => String::new(),
-                    false => "interpolated from neighbours".to_owned(),
+                if point.determined {
+                    String::new()
+                } else {
+                    "interpolated from neighbours".to_owned()
                 },
             ]);
         }

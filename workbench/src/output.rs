@@ -67,9 +67,10 @@ pub fn is_stdout(path: &Path) -> bool {
 /// # Errors
 /// If the name is `-`; `why` is the reason in the message.
 pub fn no_stdout(option: &str, path: Option<&Path>, why: &str) -> Result<(), Error> {
-    match path.is_some_and(is_stdout) {
-        true => Err(Error::Usage(format!("{option} -: {why}; give a file"))),
-        false => Ok(()),
+    if path.is_some_and(is_stdout) {
+        Err(Error::Usage(format!("{option} -: {why}; give a file")))
+    } else {
+        Ok(())
     }
 }
 

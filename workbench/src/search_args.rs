@@ -45,8 +45,9 @@ pub fn limit(budget_s: f64, requested: Option<&AtomicBool>) -> Limit<'_> {
 /// A time in s, of up to a day.
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    match (0.0..=86_400.0).contains(&seconds) {
-        true => Ok(seconds),
-        false => Err("must be 0 to 86400".to_owned()),
+    if (0.0..=86_400.0).contains(&seconds) {
+        Ok(seconds)
+    } else {
+        Err("must be 0 to 86400".to_owned())
     }
 }

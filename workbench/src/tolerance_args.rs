@@ -66,9 +66,10 @@ fn tolerance(text: &str) -> Option<Own> {
     };
     let number: f64 = number.trim().parse().ok()?;
     let is_sound = number.is_finite() && number > 0.0;
-    is_sound.then_some(match is_share {
-        true => Own::Share(0.01 * number),
-        false => Own::Value(number),
+    is_sound.then_some(if is_share {
+        Own::Share(0.01 * number)
+    } else {
+        Own::Value(number)
     })
 }
 

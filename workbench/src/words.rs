@@ -72,9 +72,12 @@ pub const ALL: [Word; 7] = [
 pub fn sentences(words: &[Word]) -> String {
     let sentence = |word: &Word| {
         let mut letters = word.term.chars();
-        let first = letters.next().map(|letter| match letter.is_ascii() {
-            true => letter.to_ascii_uppercase(),
-            false => letter,
+        let first = letters.next().map(|letter| {
+            if letter.is_ascii() {
+                letter.to_ascii_uppercase()
+            } else {
+                letter
+            }
         });
         let term: String = first.into_iter().chain(letters).collect();
         format!("{term}: {}.", word.means)

@@ -123,9 +123,10 @@ fn limits(fields: &[(String, String)]) -> String {
 
 /// How a controller takes another calibration.
 fn calibration(controller: &str) -> String {
-    let way = match controller.contains("pub fn apply(") {
-        true => "apply",
-        false => "restart",
+    let way = if controller.contains("pub fn apply(") {
+        "apply"
+    } else {
+        "restart"
     };
     format!(
         "pub(crate) fn calibrate(controller: &mut Controller, calibration: ValidCalibration) {{ controller.{way}(calibration); }}\n"

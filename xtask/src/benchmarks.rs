@@ -119,9 +119,10 @@ fn measured(command: &str) -> Result<(String, f64)> {
 /// Output as Markdown.
 fn shown(output: &str) -> String {
     let is_table = output.lines().any(|line| line.starts_with("|--"));
-    match is_table {
-        true => output.trim().to_owned(),
-        false => format!("```text\n{}\n```", output.trim_end()),
+    if is_table {
+        output.trim().to_owned()
+    } else {
+        format!("```text\n{}\n```", output.trim_end())
     }
 }
 

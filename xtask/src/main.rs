@@ -88,9 +88,12 @@ fn run(arguments: &[String]) -> Result<()> {
             check::run(way, &mut timings)?;
             let tests = Tests::build(way, &mut timings)?;
             timings.measured("coverage", || tests.tool(&["coverage"]))?;
-            timings.measured("mutants", || match is_thorough() {
-                true => mutants::run(false),
-                false => mutants::report(),
+            timings.measured("mutants", || {
+                if is_thorough() {
+                    mutants::run(false)
+                } else {
+                    mutants::report()
+                }
             })?;
             tests.run("", &mut timings)?;
         }

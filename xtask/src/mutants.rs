@@ -168,9 +168,10 @@ fn with_line(known: &str, name: &str, line: &str) -> String {
     let title = "# Changes to the code of each part, and how its tests notice them. Written by `cargo xtask mutants`.";
     let lines = PARTS.iter().filter_map(|part| {
         let prefix = format!("{} ", part.name);
-        match part.name == name {
-            true => Some(line),
-            false => known.lines().find(|line| line.starts_with(&prefix)),
+        if part.name == name {
+            Some(line)
+        } else {
+            known.lines().find(|line| line.starts_with(&prefix))
         }
     });
     std::iter::once(title)
@@ -185,9 +186,10 @@ impl Part {
         let code = self.code()?;
         let known = fs::read_to_string(workspace::root().join(PROVEN)).unwrap_or_default();
         let is_recorded = known.lines().any(|line| line.starts_with(&code));
-        match is_recorded {
-            true => println!("{PROVEN}: the tests notice every change to {code}"),
-            false => println!("{PROVEN} does not know {code}; `cargo xtask mutants` tests it"),
+        if is_recorded {
+            println!("{PROVEN}: the tests notice every change to {code}")
+        } else {
+            println!("{PROVEN} does not know {code}; `cargo xtask mutants` tests it")
         }
         Ok(is_recorded)
     }

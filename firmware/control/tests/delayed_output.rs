@@ -208,9 +208,10 @@ fn the_longest_lag_is_stable_at_the_largest_speeds() {
             error
         };
         for step in 0..10_000 {
-            compare(match step / period % 2 == 0 {
-                true => highest,
-                false => lowest,
+            compare(if step / period % 2 == 0 {
+                highest
+            } else {
+                lowest
             });
         }
         let left = (0..1_000).map(|_| compare(place)).last().unwrap();

@@ -69,9 +69,10 @@ impl Controller {
             checksum: calibration.checksum,
             ..(**present).clone()
         };
-        match same_machine == *calibration {
-            true => self.recalibrate(calibration),
-            false => self.restart(calibration),
+        if same_machine == *calibration {
+            self.recalibrate(calibration)
+        } else {
+            self.restart(calibration)
         }
     }
 

@@ -120,9 +120,10 @@ fn no_value_of_the_calibration_moves_a_hitch_at_rest() {
         };
         words += 1;
         // Whatever is not live locks, wherever the hitch is.
-        let watched = match range.class.is_live() {
-            true => &places[..],
-            false => &places[..1],
+        let watched = if range.class.is_live() {
+            &places[..]
+        } else {
+            &places[..1]
         };
         for value in values(word, range, &mut random) {
             let Some(calibration) = changed(word, value) else {

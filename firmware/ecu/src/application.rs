@@ -231,9 +231,10 @@ impl<F: NorFlash> Ecu<F> {
         if self.service.is_storing() || !contacts.panel.is_closed(Contact::Service) {
             return Access::Locked;
         }
-        match is_at_rest(&self.outputs) {
-            true => Access::AtRest,
-            false => Access::Moving,
+        if is_at_rest(&self.outputs) {
+            Access::AtRest
+        } else {
+            Access::Moving
         }
     }
 

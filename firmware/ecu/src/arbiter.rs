@@ -57,12 +57,13 @@ impl Arbiter {
             (Remote::Position(position), taken_at) => {
                 let taken_at = *self.lever.insert(taken_at.unwrap_or(lever));
                 self.overridden |= (lever - taken_at).magnitude() > TAKEN || inputs.jog.is_some();
-                match self.overridden {
-                    true => held(inputs),
-                    false => Inputs {
+                if self.overridden {
+                    held(inputs)
+                } else {
+                    Inputs {
                         set_point: Some(angle(position, limits)),
                         ..inputs
-                    },
+                    }
                 }
             }
         }

@@ -47,8 +47,9 @@ impl BusWatch {
 }
 
 const fn held(left_ms: u16, is_there: bool) -> u16 {
-    match is_there {
-        true => HELD_MS,
-        false => left_ms.saturating_sub(1),
+    if is_there {
+        HELD_MS
+    } else {
+        left_ms.saturating_sub(1)
     }
 }

@@ -100,9 +100,10 @@ where
     fn set_pulses(&mut self, lift: Compare, lower: Compare) -> Result<(), CoilDriverError> {
         let lift = self.lift.set_duty_cycle(lift.get());
         let lower = self.lower.set_duty_cycle(lower.get());
-        match lift.is_ok() && lower.is_ok() {
-            true => Ok(()),
-            false => Err(CoilDriverError),
+        if lift.is_ok() && lower.is_ok() {
+            Ok(())
+        } else {
+            Err(CoilDriverError)
         }
     }
 }

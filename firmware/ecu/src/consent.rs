@@ -99,12 +99,13 @@ impl LeverGesture {
             return false;
         }
         let count = last.map_or(1, |(_, count, _)| count.saturating_add(1));
-        *self = match count >= STROKES {
-            true => Self::default(),
-            false => Self {
+        *self = if count >= STROKES {
+            Self::default()
+        } else {
+            Self {
                 range: Some((lever, lever)),
                 last: Some((rises, count, Millisecond::ZERO)),
-            },
+            }
         };
         count >= STROKES
     }

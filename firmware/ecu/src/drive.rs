@@ -58,13 +58,14 @@ impl Drive {
         let lift = Compare::of(outputs.lift_duty, pwm_steps);
         let lower = Compare::of(outputs.lower_duty, pwm_steps);
         let asked = lift != Compare::OFF || lower != Compare::OFF;
-        match asked && outputs.fault.is_none() && outputs.trip.is_none() {
-            true => Self {
+        if asked && outputs.fault.is_none() && outputs.trip.is_none() {
+            Self {
                 lift,
                 lower,
                 enable: true,
-            },
-            false => Self::OFF,
+            }
+        } else {
+            Self::OFF
         }
     }
 }

@@ -251,14 +251,16 @@ pub fn frame_from_bytes(bytes: &[u8; FRAME_BYTES]) -> Option<Frame> {
     let [a, b, c, d, length, _, _, _, data @ ..] = bytes;
     let word = u32::from_le_bytes([*a, *b, *c, *d]);
     let bits = word & ExtendedId::MAX.as_raw();
-    let id = match word & EXTENDED != 0 {
-        true => Id::Extended(ExtendedId::new(bits)?),
-        false => Id::Standard(StandardId::new(u16::try_from(bits).ok()?)?),
+    let id = if word & EXTENDED != 0 {
+        Id::Extended(ExtendedId::new(bits)?)
+    } else {
+        Id::Standard(StandardId::new(u16::try_from(bits).ok()?)?)
     };
     let length = usize::from(*length);
-    match word & REMOTE != 0 {
-        true => Frame::remote_frame(id, length),
-        false => Frame::data_frame(id, data.get(..length)?),
+    if word & REMOTE != 0 {
+        Frame::remote_frame(id, length)
+    } else {
+        Frame::data_frame(id, data.get(..length)?)
     }
 }
 

@@ -64,9 +64,10 @@ impl Panel {
     /// The panel with one contact closed or opened.
     #[must_use]
     pub const fn with(self, contact: Contact, closed: bool) -> Self {
-        match closed {
-            true => Self(self.0 | contact as u16),
-            false => Self(self.0 & !(contact as u16)),
+        if closed {
+            Self(self.0 | contact as u16)
+        } else {
+            Self(self.0 & !(contact as u16))
         }
     }
 

@@ -37,9 +37,10 @@ pub struct TaskSequenceMonitor {
 impl TaskSequenceMonitor {
     /// `task` has run.
     pub fn passed(&mut self, task: Task) {
-        match task as u8 == self.done.saturating_add(1) {
-            true => self.done = task as u8,
-            false => self.violated = true,
+        if task as u8 == self.done.saturating_add(1) {
+            self.done = task as u8
+        } else {
+            self.violated = true
         }
     }
 

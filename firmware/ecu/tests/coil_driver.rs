@@ -145,9 +145,10 @@ fn a_pulse_output_that_fails_cuts_both_coils_until_restart() {
     let zero = Duty::set_duty_cycle(0);
     for lift_fails in [true, false] {
         let (lift, lower) = (Duty::set_duty_cycle(2_100), zero.clone());
-        let (lift, lower) = match lift_fails {
-            true => (failing(lift), lower),
-            false => (lift, failing(lower)),
+        let (lift, lower) = if lift_fails {
+            (failing(lift), lower)
+        } else {
+            (lift, failing(lower))
         };
         let (mut driver, log) = driver(
             &[lift, zero.clone(), zero.clone()],
@@ -171,9 +172,10 @@ fn a_line_that_cannot_be_written_does_not_keep_the_pulses_from_zero() {
         let pulses = [Duty::set_duty_cycle(2_100), zero.clone()];
         let lift = if rises { &pulses[..] } else { &pulses[1..] };
         let lower = vec![zero; lift.len()];
-        let line = match rises {
-            true => vec![broken(high()), broken(low())],
-            false => vec![broken(low())],
+        let line = if rises {
+            vec![broken(high()), broken(low())]
+        } else {
+            vec![broken(low())]
         };
         let (mut driver, _) = driver(lift, &lower, &line, &[]);
         let drive = if rises { lifting() } else { Drive::OFF };

@@ -122,9 +122,10 @@ impl AngleWatch {
     /// The command without a lowering current if the hitch may be on the ground; a command without one ends that.
     pub fn withhold(&mut self, command: CoilCurrents) -> CoilCurrents {
         self.ground_contact &= command.lower > MilliAmp::ZERO;
-        match self.ground_contact {
-            true => CoilCurrents::OFF,
-            false => command,
+        if self.ground_contact {
+            CoilCurrents::OFF
+        } else {
+            command
         }
     }
 
@@ -187,10 +188,7 @@ impl AngleWatch {
             return;
         };
         let shown = self.shown(samples);
-        let along = |angle: MilliDegree| match lifting {
-            true => angle,
-            false => -angle,
-        };
+        let along = |angle: MilliDegree| if lifting { angle } else { -angle };
         let newest = along(samples.newest());
         let settling = settling(self.hidden_nm, lifting, shown.mean, limits);
         let stroke = self.stroke.get_or_insert(Stroke {
@@ -232,9 +230,10 @@ impl AngleWatch {
 /// the other way. A heavy load sinks by 1.3 times the curve's speed, and a spool that closes 40 ms late leaves 1.5 times
 /// of it at 0.1 s of lag, less at a longer one.
 fn settling(hidden_nm: i32, lifting: bool, angle: MilliDegree, limits: Limits<'_>) -> MilliDegree {
-    let against = match lifting {
-        true => hidden_nm.saturating_neg(),
-        false => hidden_nm,
+    let against = if lifting {
+        hidden_nm.saturating_neg()
+    } else {
+        hidden_nm
     };
     let micrometre = against.max(0) / 1_000;
     MilliDegree(micrometre.saturating_mul(limits.machine.degrees(angle)) / 1_000 * 2)

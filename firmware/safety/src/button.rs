@@ -57,13 +57,15 @@ impl Button {
         let switches = &inputs.switches;
         let agree = !has_second_contact
             || (switches.up_released != (up || both) && switches.down_released != (down || both));
-        self.idle_for = match idle && agree {
-            true => self.idle_for.next().min(BOUNCE),
-            false => Millisecond::ZERO,
+        self.idle_for = if idle && agree {
+            self.idle_for.next().min(BOUNCE)
+        } else {
+            Millisecond::ZERO
         };
-        self.contradicts_for = match agree {
-            true => Millisecond::ZERO,
-            false => self.contradicts_for.next().min(CONTRADICTION),
+        self.contradicts_for = if agree {
+            Millisecond::ZERO
+        } else {
+            self.contradicts_for.next().min(CONTRADICTION)
         };
         if self.contradicts_for >= CONTRADICTION {
             self.state = State::Distrusted;

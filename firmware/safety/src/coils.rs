@@ -37,9 +37,10 @@ impl CoilWatch {
         ];
         for ((asked, measured), off_for) in coils.into_iter().zip(&mut self.off_for) {
             let off = asked <= MilliAmp::ZERO;
-            *off_for = match off {
-                true => off_for.next().min(parameters.decay_time),
-                false => Millisecond::ZERO,
+            *off_for = if off {
+                off_for.next().min(parameters.decay_time)
+            } else {
+                Millisecond::ZERO
             };
             let Some(measured) = measured else {
                 continue;

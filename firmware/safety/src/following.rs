@@ -55,8 +55,7 @@ use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{Micrometre, MicrometrePerSecond, MilliAmp, MilliBar, MilliDegree};
 use hitch_quantities::{CoilCurrents, Inputs};
 
-use crate::limits::Limits;
-use crate::machine_model::MachineModel;
+use crate::limits::{Limits, MachineModel};
 
 /// The speed that is seen is averaged over this many steps; over 64 a load that swings to a standstill would
 /// still have 0.1 m/s then.
@@ -145,39 +144,37 @@ impl FollowingMonitor {
         let angle = shown.mean;
         let lifts = passed.lift > MilliAmp::ZERO;
         let travel = machine.linkage.travel(angle);
-        let along = match lifts {
-            true => travel,
-            false => -travel,
-        };
+        let along = if lifts { travel } else { -travel };
         let from = *self.from.get_or_insert(along);
         let held = is_held(angle, lifts, inputs, machine, safety);
         let moved = along - from;
         self.degrees = machine.degrees(angle);
-        let stands = match self.started {
-            false => {
-                let shift = match lifts {
-                    true => shown.latest - *self.rest.get_or_insert(angle),
-                    false => *self.rest.get_or_insert(angle) - shown.latest,
-                };
-                let most = shown.noise + safety.onset_travel;
-                self.started = shift > most;
-                let backwards = shift < -most;
-                if backwards {
-                    self.rest = None;
-                }
-                let held = held || slow_start;
-                let allowance = onset_allowance(angle, lifts, machine, safety);
-                self.onset_deficit(backwards, held, passed, limits) > allowance
+        let stands = if !self.started {
+            let shift = if lifts {
+                shown.latest - *self.rest.get_or_insert(angle)
+            } else {
+                *self.rest.get_or_insert(angle) - shown.latest
+            };
+            let most = shown.noise + safety.onset_travel;
+            self.started = shift > most;
+            let backwards = shift < -most;
+            if backwards {
+                self.rest = None;
             }
-            true => self.exceeds_allowance(moved, along, held, passed, limits),
+            let held = held || slow_start;
+            let allowance = onset_allowance(angle, lifts, machine, safety);
+            self.onset_deficit(backwards, held, passed, limits) > allowance
+        } else {
+            self.exceeds_allowance(moved, along, held, passed, limits)
         };
         if self.required_nm == 0 {
             self.from = Some(along);
         }
         let hangs = self.carries_load(inputs);
-        stands.then_some(match lifts || hangs {
-            true => Standstill::Fault,
-            false => Standstill::GroundContact,
+        stands.then_some(if lifts || hangs {
+            Standstill::Fault
+        } else {
+            Standstill::GroundContact
         })
     }
 
@@ -307,9 +304,10 @@ fn onset_allowance(
     machine: MachineModel<'_>,
     safety: &SafetyParameters,
 ) -> MilliDegree {
-    match lifts && angle <= machine.ends().0 + safety.end_zone {
-        true => safety.onset_debt + safety.stop_debt,
-        false => safety.onset_debt,
+    if lifts && angle <= machine.ends().0 + safety.end_zone {
+        safety.onset_debt + safety.stop_debt
+    } else {
+        safety.onset_debt
     }
 }
 
@@ -322,19 +320,16 @@ fn is_held(
     safety: &SafetyParameters,
 ) -> bool {
     let hydraulics = machine.hydraulics;
-    match lifts {
-        true => {
-            let full = hydraulics.relief_pressure - hydraulics.relief_margin;
-            angle >= machine.ends().1 - safety.end_zone
-                || inputs
-                    .pump_pressure
-                    .is_some_and(|pressure| pressure >= full)
-        }
-        false => {
-            angle <= machine.ends().0 + safety.end_zone
-                || inputs
-                    .cylinder_pressure
-                    .is_some_and(|pressure| pressure <= hydraulics.smallest_drop)
-        }
+    if lifts {
+        let full = hydraulics.relief_pressure - hydraulics.relief_margin;
+        angle >= machine.ends().1 - safety.end_zone
+            || inputs
+                .pump_pressure
+                .is_some_and(|pressure| pressure >= full)
+    } else {
+        angle <= machine.ends().0 + safety.end_zone
+            || inputs
+                .cylinder_pressure
+                .is_some_and(|pressure| pressure <= hydraulics.smallest_drop)
     }
 }

@@ -64,7 +64,6 @@ mod consent;
 mod following;
 mod limits;
 mod locks;
-mod machine_model;
 mod measuring;
 mod noise_detector;
 mod ride;
@@ -82,9 +81,8 @@ use arming::Arming;
 use coils::CoilWatch;
 pub use command::{Command, Step};
 use consent::Consent;
-pub use limits::Limits;
+pub use limits::{Limits, MachineModel};
 use locks::{Lock, Locks};
-pub use machine_model::MachineModel;
 use measuring::MeasuringFaults;
 use ride::RideWatch;
 use rows::{Debounce, Rows};
@@ -178,9 +176,12 @@ impl Envelope {
     #[must_use]
     pub fn release(&mut self, duties: Duties) -> Duties {
         let released = core::mem::take(&mut self.released);
-        let width = |current: MilliAmp, duty: Duty| match current > MilliAmp::ZERO {
-            true => duty.limited(Duty::ZERO, Duty::WHOLE),
-            false => Duty::ZERO,
+        let width = |current: MilliAmp, duty: Duty| {
+            if current > MilliAmp::ZERO {
+                duty.limited(Duty::ZERO, Duty::WHOLE)
+            } else {
+                Duty::ZERO
+            }
         };
         Duties {
             lift: width(released.lift, duties.lift),
@@ -237,9 +238,10 @@ impl Envelope {
     }
 
     fn count_health(&mut self, parameters: &LockParameters) {
-        self.calm_for = match self.debounce.is_calm() {
-            true => self.calm_for.next().min(parameters.healthy_time),
-            false => Millisecond::ZERO,
+        self.calm_for = if self.debounce.is_calm() {
+            self.calm_for.next().min(parameters.healthy_time)
+        } else {
+            Millisecond::ZERO
         };
         self.healthy = self.calm_for >= parameters.healthy_time;
     }

@@ -95,9 +95,10 @@ impl Debounce {
                 _ => Millisecond(1),
             };
             let first = self.count(row, held, parameters);
-            found = match found.is_some_and(Trip::is_final) {
-                true => first.filter(|trip| trip.is_final()).or(found),
-                false => first.or(found),
+            found = if found.is_some_and(Trip::is_final) {
+                first.filter(|trip| trip.is_final()).or(found)
+            } else {
+                first.or(found)
             };
         }
         found
@@ -114,14 +115,16 @@ impl Debounce {
         let index = row as usize % ROWS;
         let (count, trip) = (&mut self.counts[index], Trip::ALL[index]);
         let most = time(trip, parameters).0.max(1).saturating_mul(2);
-        *count = match held > Millisecond::ZERO {
-            true => count.saturating_add(held.0.saturating_mul(2)).min(most),
-            false => count.saturating_sub(1).max(0),
+        *count = if held > Millisecond::ZERO {
+            count.saturating_add(held.0.saturating_mul(2)).min(most)
+        } else {
+            count.saturating_sub(1).max(0)
         };
         let bit = 1 << (row & 31);
-        match *count > 0 {
-            true => self.counting.0 |= bit,
-            false => self.counting.0 &= !bit,
+        if *count > 0 {
+            self.counting.0 |= bit
+        } else {
+            self.counting.0 &= !bit
         }
         Some(trip).filter(|_| *count >= most)
     }

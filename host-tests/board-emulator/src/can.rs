@@ -117,9 +117,10 @@ impl Can {
     #[must_use]
     pub fn next_ns(&self) -> f64 {
         let frame = self.on_bus.as_ref().map_or(f64::INFINITY, |(end, _)| *end);
-        match self.off {
-            true => frame.min(self.off_until_ns),
-            false => frame,
+        if self.off {
+            frame.min(self.off_until_ns)
+        } else {
+            frame
         }
     }
 

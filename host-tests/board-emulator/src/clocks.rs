@@ -59,9 +59,12 @@ impl Clocks {
     #[must_use]
     pub fn read(&self, offset: u32, registers: &Registers, now_ns: f64) -> u32 {
         let stored = registers.get(self.rcc + offset);
-        let flag = |ready: Option<f64>, bit: u32| match ready.is_some_and(|at| now_ns >= at) {
-            true => 1 << bit,
-            false => 0,
+        let flag = |ready: Option<f64>, bit: u32| {
+            if ready.is_some_and(|at| now_ns >= at) {
+                1 << bit
+            } else {
+                0
+            }
         };
         match (self.part, offset) {
             (_, CR) => {
@@ -169,9 +172,10 @@ impl Clocks {
             Part::Stm32f405 => (field(0, 6), field(6, 9)),
             Part::Stm32g474 => (field(4, 4) + 1.0, field(8, 7)),
         };
-        let source_hz = match self.pll_uses_crystal(registers) {
-            true => self.crystal_hz,
-            false => self.internal_hz,
+        let source_hz = if self.pll_uses_crystal(registers) {
+            self.crystal_hz
+        } else {
+            self.internal_hz
         };
         [source_hz / divider, source_hz / divider * factor]
     }

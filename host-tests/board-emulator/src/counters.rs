@@ -42,9 +42,10 @@ impl Counter {
     }
 
     fn exact(&self, at_ns: f64) -> f64 {
-        match self.runs {
-            true => self.counts + (at_ns - self.since_ns) * 1e-9 * self.hz,
-            false => self.counts,
+        if self.runs {
+            self.counts + (at_ns - self.since_ns) * 1e-9 * self.hz
+        } else {
+            self.counts
         }
     }
 

@@ -231,9 +231,10 @@ impl<B: Bus> Cpu<B> {
     /// # Errors
     /// If there is something already.
     pub fn map_memory(&mut self, address: u32, bytes: u32, writable: bool) -> Result<()> {
-        let permissions = match writable {
-            true => PERMIT_ALL,
-            false => PERMIT_READ_AND_EXECUTE,
+        let permissions = if writable {
+            PERMIT_ALL
+        } else {
+            PERMIT_READ_AND_EXECUTE
         };
         // SAFETY: the engine is valid.
         let status = unsafe {

@@ -400,9 +400,10 @@ impl Flash {
         }
         let word = self.contents.word(word_offset);
         let is_cached = registers.bit(self.base, 10);
-        match is_cached {
-            true => (*self.cached.entry(word_offset).or_insert(word), None),
-            false => (word, None),
+        if is_cached {
+            (*self.cached.entry(word_offset).or_insert(word), None)
+        } else {
+            (word, None)
         }
     }
 }

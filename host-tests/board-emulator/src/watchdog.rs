@@ -47,9 +47,10 @@ impl Watchdog {
     /// When it resets the part unless it is reloaded, ns.
     #[must_use]
     pub fn expires_ns(&self) -> f64 {
-        match self.runs && !self.frozen {
-            true => self.since_ns + self.counts * self.count_ns(),
-            false => f64::INFINITY,
+        if self.runs && !self.frozen {
+            self.since_ns + self.counts * self.count_ns()
+        } else {
+            f64::INFINITY
         }
     }
 

@@ -88,8 +88,9 @@ fn chosen(names: &[String]) -> Result<Vec<(&'static str, Scenario)>> {
         })
     };
     let found = names.iter().map(find).collect::<Result<Vec<_>>>()?;
-    match found.is_empty() {
-        true => bail!("no scenario"),
-        false => Ok(found),
+    if found.is_empty() {
+        bail!("no scenario")
+    } else {
+        Ok(found)
     }
 }

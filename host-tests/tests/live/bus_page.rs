@@ -124,9 +124,10 @@ impl Shared {
 
     /// What goes on to the bus, and what is refused.
     fn answer(&self, bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
-        match self.refuses_to_listen && bytes == b"L\r" {
-            true => (Vec::new(), vec![BELL]),
-            false => (bytes.to_vec(), Vec::new()),
+        if self.refuses_to_listen && bytes == b"L\r" {
+            (Vec::new(), vec![BELL])
+        } else {
+            (bytes.to_vec(), Vec::new())
         }
     }
 }

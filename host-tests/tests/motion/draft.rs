@@ -275,9 +275,10 @@ fn a_lost_or_stuck_sensor_moves_the_hitch_by_less_than_three_degrees() {
             };
             let is_pin = name.contains("pin");
             // With a speed lost, draft control goes on, and moves the hitch as the soil wants.
-            let (soil, times_s) = match is_pin {
-                true => (SoilPlan::varying(Texture::Medium), cases(3, 20)),
-                false => (SoilPlan::uniform(Texture::Medium), 1),
+            let (soil, times_s) = if is_pin {
+                (SoilPlan::varying(Texture::Medium), cases(3, 20))
+            } else {
+                (SoilPlan::uniform(Texture::Medium), 1)
             };
             let pass = pass(soil, settings, 12.0, 3);
             let mut most_deg = 0.0_f64;

@@ -137,9 +137,12 @@ fn wire(trouble: Trouble, outputs: &Outputs, currents: &mut Currents) {
         CutAtOnce | CoilOpen => *currents = Currents::default(),
         // Whatever the regulation does about it.
         CoilShorted if fed => {
-            let shorted = |asked: MilliAmp| match asked > MilliAmp(0) {
-                true => f64::from(asked.0) * 1e-3 + 1.0,
-                false => 0.0,
+            let shorted = |asked: MilliAmp| {
+                if asked > MilliAmp(0) {
+                    f64::from(asked.0) * 1e-3 + 1.0
+                } else {
+                    0.0
+                }
             };
             currents.lift_a = shorted(outputs.lift_current);
             currents.lower_a = shorted(outputs.lower_current);

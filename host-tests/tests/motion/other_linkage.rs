@@ -40,9 +40,10 @@ fn share_at(deg: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..50 {
         let middle = 0.5 * (low + high);
-        match angle_deg(middle) < deg {
-            true => low = middle,
-            false => high = middle,
+        if angle_deg(middle) < deg {
+            low = middle
+        } else {
+            high = middle
         }
     }
     low

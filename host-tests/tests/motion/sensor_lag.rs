@@ -256,9 +256,10 @@ fn drawn_hitches_with_lag_arrive_without_a_fault() {
         let mut machine = draw(seed, MOVES);
         machine.physics.sensors.angle_lag_s = 1e-3 * f64::from(lag_ms);
         let moves = drive_drawn(&machine, &calibration(lag_ms));
-        match machine.physics.compensator_lag_s > 0.0 {
-            true => oscillating.extend(moves),
-            false => quick.extend(moves),
+        if machine.physics.compensator_lag_s > 0.0 {
+            oscillating.extend(moves)
+        } else {
+            quick.extend(moves)
         }
     }
     let [_, overshoot, error, _, _, fault] = &FIGURES;

@@ -33,9 +33,12 @@ enum Lag {
 /// The nominal calibration with every value off by its tolerance: flow 10 %, hysteresis 50 %, bore 0.5 %, drop 20 %. The
 /// drawn machines differ by 0.1 A in their thresholds.
 fn wrong_calibration(random: &mut Pcg64) -> ValidCalibration {
-    let mut off = |tolerance: f64| match random.random::<bool>() {
-        true => 1.0 + tolerance,
-        false => 1.0 - tolerance,
+    let mut off = |tolerance: f64| {
+        if random.random::<bool>() {
+            1.0 + tolerance
+        } else {
+            1.0 - tolerance
+        }
     };
     let mut calibration = Calibration::nominal();
     for table in [&mut calibration.lift, &mut calibration.lower] {

@@ -64,9 +64,10 @@ fn read_all(path: &Path, contents: impl Iterator<Item = Vec<u8>>) -> (usize, usi
     let dir = path.parent().unwrap();
     for content in contents {
         fs::write(path, content).unwrap();
-        let is_read = match survey::is_bus(path) {
-            true => survey::bus_signals(path, &dir.join("rig.dbc")).map(|_| ()),
-            false => survey::Survey::of(path).map(|_| ()),
+        let is_read = if survey::is_bus(path) {
+            survey::bus_signals(path, &dir.join("rig.dbc")).map(|_| ())
+        } else {
+            survey::Survey::of(path).map(|_| ())
         };
         let campaign = Campaign::load(dir);
         for message in [is_read.err(), campaign.as_ref().err().cloned()] {
@@ -115,11 +116,10 @@ fn broken_binary_logs_are_refused() {
         });
         let (accepted, all) = read_all(&path, flipped);
         println!("{name}: {read} of {cut} cut ones are read, {accepted} of {all} changed ones");
-        match name.ends_with(".blf") {
-            // Of a recording that is cut off, what is whole is a run if it has enough samples.
-            true => assert!(read * 4 > cut, "{name}: {read} of {cut}"),
-            // A variable that is not needed, or padding, may be missing at the end.
-            false => assert!(read * 4 < cut, "{name}: {read} of {cut}"),
+        if name.ends_with(".blf") {
+            assert!(read * 4 > cut, "{name}: {read} of {cut}")
+        } else {
+            assert!(read * 4 < cut, "{name}: {read} of {cut}")
         }
     }
 }

@@ -176,10 +176,10 @@ fn an_imported_plant_is_the_simulated_one() {
             let plant = scripts().join("fmu_plant.py");
             script(python, folder.path(), &plant, &arguments);
             let [simulated, imported] = ["simulated.csv", "imported.csv"].map(place);
-            let apart = match name.starts_with("flow") {
-                // The bench has no angle.
-                true => largest_difference_on_bench(&simulated, &imported),
-                false => largest_difference(&simulated, &imported, 4),
+            let apart = if name.starts_with("flow") {
+                largest_difference_on_bench(&simulated, &imported)
+            } else {
+                largest_difference(&simulated, &imported, 4)
             };
             println!("{model}, {name}: {apart:.1e}");
             // What `hitch simulate` writes is rounded to five decimals.

@@ -93,9 +93,10 @@ pub fn read(
     let source = Arc::new(file.source().clone());
     let series = taken.iter().map(|(name, series)| (*name, 0, series));
     let table = Table::of_series(&source, (0, &rows.until(whole_s)), series, Cells::Nowhere)?;
-    Ok(match file.is_cut_off() {
-        true => table.cut_off(),
-        false => table,
+    Ok(if file.is_cut_off() {
+        table.cut_off()
+    } else {
+        table
     })
 }
 
@@ -153,9 +154,10 @@ fn find(file: &dyn ChannelFile, wanted: &Source) -> Result<Option<usize>, Campai
                 wanted.column.name
             );
             let [first, second] = [first, second].map(|index| quote(&channels[index].name));
-            let mend = match first == second {
-                true => "give them different names, and save the file again".to_owned(),
-                false => format!("assign {first} or {second}"),
+            let mend = if first == second {
+                "give them different names, and save the file again".to_owned()
+            } else {
+                format!("assign {first} or {second}")
             };
             Err(file.source().error(what, mend))
         }

@@ -57,9 +57,10 @@ fn fill(
         return Err(gap(duration_s));
     }
     let start_a = current_a[from];
-    let slope = match from == to {
-        true => 0.0,
-        false => (current_a[to] - start_a) / (time_s[to] - time_s[from]),
+    let slope = if from == to {
+        0.0
+    } else {
+        (current_a[to] - start_a) / (time_s[to] - time_s[from])
     };
     for i in sample..end {
         current_a[i] = start_a + slope * (time_s[i] - time_s[from]);

@@ -15,9 +15,10 @@ pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, 
     if path.exists() {
         return Ok(path);
     }
-    let what = match Path::new(file).is_absolute() {
-        true => format!("file {} does not exist", quote(file)),
-        false => format!("the folder contains no file {}", quote(file)),
+    let what = if Path::new(file).is_absolute() {
+        format!("file {} does not exist", quote(file))
+    } else {
+        format!("the folder contains no file {}", quote(file))
     };
     let mend = match key {
         "file" => "correct the name, or delete this [[run]] block",

@@ -104,12 +104,11 @@ impl Series {
         let (before, after) = (known(sample.checked_sub(1)), known(Some(sample + 1)));
         let span_s = self.times_s[after] - self.times_s[before];
         let later_s = time_s - self.times_s[sample];
-        match span_s > 0.0 {
-            true => {
-                let rise = self.values[after] - self.values[before];
-                self.values[sample] + rise * (later_s / span_s)
-            }
-            false => self.values[sample],
+        if span_s > 0.0 {
+            let rise = self.values[after] - self.values[before];
+            self.values[sample] + rise * (later_s / span_s)
+        } else {
+            self.values[sample]
         }
     }
 

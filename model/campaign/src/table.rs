@@ -291,9 +291,10 @@ impl Table {
         match dropout::bridge(time_s, &mut current_a) {
             Ok(()) => Ok(current_a),
             Err(gap) => {
-                let what = match gap.duration_s.is_finite() {
-                    true => format!("{name} is missing for {:.2} s", gap.duration_s),
-                    false => format!("{name} has no values"),
+                let what = if gap.duration_s.is_finite() {
+                    format!("{name} is missing for {:.2} s", gap.duration_s)
+                } else {
+                    format!("{name} has no values")
                 };
                 let mend = "the currents are inputs of the model: log the run again, or cut it before the gap";
                 Err(self.error_in(gap.sample, name, what, mend))
@@ -312,11 +313,10 @@ impl Table {
         };
         let (what, from_s, to_s) = self.step(before + 1, time_s);
         let what = format!("time {what}: {to_s} s after {from_s} s");
-        let mend = match rises(time_s) {
-            true => format!(
-                "{TIME} has to rise from row to row, in steps of at most {LONGEST_STEP_S} s"
-            ),
-            false => "export the times with more digits".to_owned(),
+        let mend = if rises(time_s) {
+            format!("{TIME} has to rise from row to row, in steps of at most {LONGEST_STEP_S} s")
+        } else {
+            "export the times with more digits".to_owned()
         };
         Err(self.error_in(before + 1, TIME, what, mend))
     }

@@ -124,9 +124,12 @@ pub fn bases(columns: &[Seen]) -> Vec<Option<usize>> {
             .iter()
             .copied()
             .find(|&time| is_named_after(&columns[time], &columns[index]));
-        by_name.or_else(|| match fits(usual) {
-            true => Some(usual),
-            false => others.next().or(Some(usual)),
+        by_name.or_else(|| {
+            if fits(usual) {
+                Some(usual)
+            } else {
+                others.next().or(Some(usual))
+            }
         })
     };
     (0..columns.len()).map(base).collect()
@@ -185,11 +188,10 @@ pub fn notes(columns: &[Seen], bases: &[Option<usize>]) -> Vec<String> {
             .map(|index| columns[index].name.as_str())
             .filter(|name| !name.is_empty())
             .collect();
-        match owned.is_empty() {
-            true => {
-                format!("\"{name}\" has times as well, and no column of its own: it is not used")
-            }
-            false => format!("\"{name}\" has the times of {}", owned.join(", ")),
+        if owned.is_empty() {
+            format!("\"{name}\" has times as well, and no column of its own: it is not used")
+        } else {
+            format!("\"{name}\" has the times of {}", owned.join(", "))
         }
     };
     times.into_iter().map(note).collect()

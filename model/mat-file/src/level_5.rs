@@ -137,9 +137,10 @@ impl Reader {
         let read = unpacked.read_to_end(&mut bytes);
         read.map_err(|error| format!("has a variable that cannot be unpacked: {error}"))?;
         self.unpacked += bytes.len() as u64;
-        match self.unpacked < LARGEST {
-            true => Ok(bytes),
-            false => Err("has more than 512 MiB of data".to_owned()),
+        if self.unpacked < LARGEST {
+            Ok(bytes)
+        } else {
+            Err("has more than 512 MiB of data".to_owned())
         }
     }
 
@@ -186,14 +187,15 @@ impl Reader {
         if self.numbers > MOST_NUMBERS {
             return Err(format!("has more than {MOST_NUMBERS} numbers"));
         }
-        match size[0].checked_mul(size[1]) == Some(values.len()) {
-            true => Ok(Value::Numbers { size, values }),
-            false => Err(format!(
+        if size[0].checked_mul(size[1]) == Some(values.len()) {
+            Ok(Value::Numbers { size, values })
+        } else {
+            Err(format!(
                 "has a matrix of {} by {} with {} numbers",
                 size[0],
                 size[1],
                 values.len()
-            )),
+            ))
         }
     }
 

@@ -24,8 +24,9 @@ pub fn is_one(bytes: &[u8]) -> bool {
 /// # Errors
 /// What is wrong with the file.
 pub fn variables(bytes: &[u8]) -> Result<Vec<(String, Value)>, String> {
-    match file_kind::is_mat(bytes) {
-        true => level_5::variables(bytes),
-        false => level_4::variables(bytes),
+    if file_kind::is_mat(bytes) {
+        level_5::variables(bytes)
+    } else {
+        level_4::variables(bytes)
     }
 }

@@ -74,15 +74,17 @@ impl Recording {
             recording.correct(0, b"MDF     ".to_vec());
             recording.correct(UNFINISHED, vec![0; 4]);
         }
-        let is_described = match is_v4 {
-            true => recording.end_v4(),
-            false => recording.end_v3(begin.get(24) != Some(&0)),
+        let is_described = if is_v4 {
+            recording.end_v4()
+        } else {
+            recording.end_v3(begin.get(24) != Some(&0))
         };
-        match is_described {
-            true => Ok(Arc::new(recording)),
-            false => Err(Mf4Error::parse_error(
+        if is_described {
+            Ok(Arc::new(recording))
+        } else {
+            Err(Mf4Error::parse_error(
                 "the file is cut off before the description of its channels, and its samples alone have no names",
-            )),
+            ))
         }
     }
 

@@ -126,9 +126,12 @@ mod tests {
         let model = model();
         let all = scalars(&model);
         let changed = |name: &str, value: f64| {
-            let values = all.iter().map(|scalar| match scalar.name == name {
-                true => value,
-                false => scalar.value,
+            let values = all.iter().map(|scalar| {
+                if scalar.name == name {
+                    value
+                } else {
+                    scalar.value
+                }
             });
             with_scalars(&model, &values.collect::<Vec<f64>>())
         };

@@ -52,9 +52,10 @@ impl Model {
         let same_linkage = constants.linkage == self.constants.linkage
             && constants.linkage_table == self.constants.linkage_table
             && constants.cylinder.stroke_m == self.constants.cylinder.stroke_m;
-        let linkage = match same_linkage {
-            true => Arc::clone(&self.linkage),
-            false => Arc::new(linkage_of(&constants)?),
+        let linkage = if same_linkage {
+            Arc::clone(&self.linkage)
+        } else {
+            Arc::new(linkage_of(&constants)?)
         };
         Ok(Self {
             spool_lag_s: spool_lag_s(&constants),
@@ -126,9 +127,12 @@ impl Model {
             usual_kg: usual,
             heavy_kg: heavy,
         } = constants.usual_loads;
-        let stated_or = |stated_kg: f64, factor: f64| match stated_kg > 0.0 {
-            true => stated_kg,
-            false => factor * light_kg,
+        let stated_or = |stated_kg: f64, factor: f64| {
+            if stated_kg > 0.0 {
+                stated_kg
+            } else {
+                factor * light_kg
+            }
         };
         [
             stated_or(light, 1.0),

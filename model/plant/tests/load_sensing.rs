@@ -39,9 +39,10 @@ fn a_load_sensing_pump_differs_from_a_bypass_only_in_its_standby_pressure() {
             let [bypassed, sensed] = flows;
             assert_eq!(bypassed.lift_m3_s, sensed.lift_m3_s);
             let idle_bar = bar_from_pa(sensed.pump_pressure_pa);
-            match current_a > 1.2 {
-                true => assert_eq!(bypassed.pump_pressure_pa, sensed.pump_pressure_pa),
-                false => assert!((idle_bar - STANDBY_BAR).abs() < 1e-9, "{idle_bar}"),
+            if current_a > 1.2 {
+                assert_eq!(bypassed.pump_pressure_pa, sensed.pump_pressure_pa)
+            } else {
+                assert!((idle_bar - STANDBY_BAR).abs() < 1e-9, "{idle_bar}")
             }
         }
     }

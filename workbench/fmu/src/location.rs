@@ -29,9 +29,10 @@ pub fn path(uri: &str) -> Result<PathBuf, String> {
         .decode_utf8()
         .map_err(|_| format!("{uri:?} is not UTF-8; {MEND}"))?;
     // On Windows the drive follows the slash.
-    let path = match cfg!(windows) {
-        true => path.trim_start_matches('/'),
-        false => &path,
+    let path = if cfg!(windows) {
+        path.trim_start_matches('/')
+    } else {
+        &path
     };
     Ok(PathBuf::from(path))
 }

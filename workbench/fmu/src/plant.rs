@@ -253,12 +253,13 @@ fn show(plant: &OwnedPlant, values: &mut [Value]) {
     let state = plant.state();
     let angle_rad = plant.rocker_angle_rad();
     let speed_m_s = state.speed_m_s;
-    let (on_bench, turning_rad_s) = match angle_rad.is_nan() {
-        true => (true, f64::NAN),
-        false => (
+    let (on_bench, turning_rad_s) = if angle_rad.is_nan() {
+        (true, f64::NAN)
+    } else {
+        (
             false,
             speed_m_s * model.linkage().angle_slope_rad_m(angle_rad),
-        ),
+        )
     };
     let on_hitch = |value: f64| if on_bench { f64::NAN } else { value };
     let mut put = |index: usize, value: f64| {

@@ -89,15 +89,16 @@ impl Drive<'_> {
         let steps = ((self.on_s + SWING_S) / STEP_S) as usize;
         for step in 0..steps {
             let current_a = self.current_a(step as f64 * STEP_S);
-            let currents = match upward {
-                true => Currents {
+            let currents = if upward {
+                Currents {
                     lift_a: current_a,
                     lower_a: 0.0,
-                },
-                false => Currents {
+                }
+            } else {
+                Currents {
                     lift_a: 0.0,
                     lower_a: current_a,
-                },
+                }
             };
             plant.step(currents, STEP_S);
             let angle_deg = plant.rocker_angle_rad().to_degrees();
@@ -113,11 +114,10 @@ impl Drive<'_> {
         let opening = (time_s / EDGE_S)
             .min((self.on_s - time_s) / EDGE_S)
             .min(1.0);
-        match opening > 0.0 {
-            true => {
-                self.ends.threshold_a + opening * (self.ends.saturation_a - self.ends.threshold_a)
-            }
-            false => 0.0,
+        if opening > 0.0 {
+            self.ends.threshold_a + opening * (self.ends.saturation_a - self.ends.threshold_a)
+        } else {
+            0.0
         }
     }
 }

@@ -36,9 +36,10 @@ pub fn first_missed(run: &LoopRun) -> Option<String> {
 fn cause(result: &MoveResult, trace: &MoveTrace) -> String {
     let end = &trace.end;
     if result.shortest_s.is_nan() {
-        return match result.to_deg > result.from_deg {
-            true => "the pump cannot lift this load there, as even the ideal manoeuvre shows; take a smaller one".to_owned(),
-            false => "this load does not lower the hitch there, as even the ideal manoeuvre shows; take a larger one".to_owned(),
+        return if result.to_deg > result.from_deg {
+            "the pump cannot lift this load there, as even the ideal manoeuvre shows; take a smaller one".to_owned()
+        } else {
+            "this load does not lower the hitch there, as even the ideal manoeuvre shows; take a larger one".to_owned()
         };
     }
     if let Some(fault) = trace.fault {
@@ -57,15 +58,16 @@ fn cause(result: &MoveResult, trace: &MoveTrace) -> String {
         );
     }
     let is_driven = end.outputs.lift_current.0 > 0 || end.outputs.lower_current.0 > 0;
-    match is_driven {
-        true => format!(
+    if is_driven {
+        format!(
             "it is still driven at the end, {:.1} deg away; check the valve map (`hitch calibrate`) and the speeds in [position]",
             result.final_error_deg
-        ),
-        false => format!(
+        )
+    } else {
+        format!(
             "it rests {:.1} deg away with both coils off; check position.stop_band and position.restart_band",
             result.final_error_deg
-        ),
+        )
     }
 }
 

@@ -256,9 +256,10 @@ fn judge(press: &Press, angles_deg: &[f64]) -> PressResult {
         oil_temperature_c: press.oil_temperature_c,
         speed_ratio: travel_deg / steady_s / press.rate_deg_per_s,
         start_delay_s: started.map_or(f64::NAN, |at| (at + MEAN_MS / 2) as f64 * STEP_S),
-        stop_delay_s: match is_at_rest {
-            true => (last_moving + 1).saturating_sub(held) as f64 * STEP_S,
-            false => f64::NAN,
+        stop_delay_s: if is_at_rest {
+            (last_moving + 1).saturating_sub(held) as f64 * STEP_S
+        } else {
+            f64::NAN
         },
         speed_overshoot: shares.iter().copied().fold(1.0, f64::max) - 1.0,
         travel_after_deg: (end_deg - angles_deg[held - 1]).abs(),

@@ -116,9 +116,12 @@ pub fn press_figures(runs: Named<'_, PressRun>) -> Sides {
 #[must_use]
 pub fn moves(runs: Named<'_, LoopRun>) -> Sides {
     let mut sides = Sides::new(&["move, deg", "load, kg", "oil, C"], runs);
-    let cell = |result: &MoveResult| match result.arrived {
-        true => format!("{} / {:.2}", known(result.ratio, 2), result.overshoot_deg),
-        false => "never arrives".to_owned(),
+    let cell = |result: &MoveResult| {
+        if result.arrived {
+            format!("{} / {:.2}", known(result.ratio, 2), result.overshoot_deg)
+        } else {
+            "never arrives".to_owned()
+        }
     };
     for (index, result) in runs
         .first()

@@ -36,12 +36,13 @@ impl FromStr for Variant {
             .split(',')
             .map(|one| one.trim().to_owned())
             .collect();
-        match settings.iter().all(|setting| setting.contains('=')) {
-            true => Ok(Self {
+        if settings.iter().all(|setting| setting.contains('=')) {
+            Ok(Self {
                 name: name.to_owned(),
                 settings,
-            }),
-            false => Err(form.to_owned()),
+            })
+        } else {
+            Err(form.to_owned())
         }
     }
 }

@@ -68,9 +68,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
     drop(progress);
     let rebuilt = rebuilt(&model, &fit.estimate, output::stem(&args.out));
     output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
-    let mut text = match is_unsuitable(&experiment, &base, &fit) {
-        true => format!("{}\n\n", wrapped(HOPELESS_BASE)),
-        false => String::new(),
+    let mut text = if is_unsuitable(&experiment, &base, &fit) {
+        format!("{}\n\n", wrapped(HOPELESS_BASE))
+    } else {
+        String::new()
     };
     // Writing to a string cannot fail.
     let head = format!(

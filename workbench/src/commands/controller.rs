@@ -92,9 +92,10 @@ pub fn serve(
     }
     let mut columns = Columns::parse(&line).map_err(|error| fault(1, error))?;
     let has_field = columns.has_field();
-    match has_field {
-        true => answer(&mut output, &[HEADER, FIELD_HEADER].concat())?,
-        false => answer(&mut output, HEADER)?,
+    if has_field {
+        answer(&mut output, &[HEADER, FIELD_HEADER].concat())?
+    } else {
+        answer(&mut output, HEADER)?
     }
     let mut number = 2;
     while next_line(&mut input, &mut line, number)? {

@@ -77,9 +77,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let flash = flash(args)?;
     let server = args.can.as_deref().map(open_slcan_server).transpose()?;
     let mut session = Session::new(&model, args, server);
-    let runner = match args.host {
-        true => Runner::Host,
-        false => Runner::emulator(args.image.as_deref())?,
+    let runner = if args.host {
+        Runner::Host
+    } else {
+        Runner::emulator(args.image.as_deref())?
     };
     let mut machine = runner.power_up(flash).map_err(failed)?;
     let result = session.run(&mut machine);

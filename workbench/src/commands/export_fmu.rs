@@ -57,12 +57,11 @@ impl Args {
     /// What the unit holds. The model and the calibration are written anew, complete.
     fn content(&self) -> Result<(Kind, SourceFile), Error> {
         let model = hitch_model_file::named(&self.model)?;
-        let (kind, text) = match self.controller {
-            false => (Kind::Plant, hitch_model_file::to_toml(&model)),
-            true => {
-                let calibration = calibration(self.calibration.as_ref())?;
-                (Kind::Controller, calibration_file::write(&calibration))
-            }
+        let (kind, text) = if !self.controller {
+            (Kind::Plant, hitch_model_file::to_toml(&model))
+        } else {
+            let calibration = calibration(self.calibration.as_ref())?;
+            (Kind::Controller, calibration_file::write(&calibration))
         };
         let path = Path::new(kind.file()).to_path_buf();
         Ok((kind, SourceFile { path, text }))

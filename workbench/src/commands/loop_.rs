@@ -205,9 +205,10 @@ impl Job<'_> {
             return Err(Error::Usage("the scenario has no moves".to_owned()));
         };
         if let Some(path) = &self.args.report {
-            let page = match varied.is_empty() {
-                true => self.page(base),
-                false => variants_page::of_moves(&self.setup(), &named),
+            let page = if varied.is_empty() {
+                self.page(base)
+            } else {
+                variants_page::of_moves(&self.setup(), &named)
             };
             output::write_file(path, page.as_bytes())?;
         }
@@ -223,9 +224,10 @@ impl Job<'_> {
                 .collect(),
         };
         self.outputs.tell(&self.args.json, &document, || {
-            match document.variants.is_empty() {
-                true => text(&base.results, &base.summary),
-                false => show_variants::moves_text(&named),
+            if document.variants.is_empty() {
+                text(&base.results, &base.summary)
+            } else {
+                show_variants::moves_text(&named)
             }
         })?;
         // The results are complete, but they do not have what was asked for.
@@ -271,9 +273,10 @@ impl Job<'_> {
                 .collect(),
         };
         self.outputs.tell(&self.args.json, &document, || {
-            match document.variants.is_empty() {
-                true => presses_text(&base.results, &base.summary),
-                false => show_variants::presses_text(&named),
+            if document.variants.is_empty() {
+                presses_text(&base.results, &base.summary)
+            } else {
+                show_variants::presses_text(&named)
             }
         })?;
         let mut stuck = named.iter().filter_map(|(name, run)| {
@@ -323,9 +326,10 @@ impl Job<'_> {
 
     /// A fault of a run; with variants, after the name of its calibration.
     fn of_variant(&self, name: &str, what: String) -> String {
-        match self.args.variants.is_empty() {
-            true => what,
-            false => format!("{name}: {what}"),
+        if self.args.variants.is_empty() {
+            what
+        } else {
+            format!("{name}: {what}")
         }
     }
 
@@ -336,9 +340,10 @@ impl Job<'_> {
             .variants
             .iter()
             .map(|variant| variant.name.as_str());
-        let base = match self.args.variants.is_empty() {
-            true => "hitch",
-            false => BASE,
+        let base = if self.args.variants.is_empty() {
+            "hitch"
+        } else {
+            BASE
         };
         [base].into_iter().chain(variants).zip(runs).collect()
     }

@@ -53,9 +53,10 @@ pub struct Args {
 /// # Errors
 /// If the named command writes no JSON document.
 pub fn run(args: &Args) -> Result<(), Error> {
-    let (documents, option) = match args.jsonl {
-        false => (&DOCUMENTS[..], "--json"),
-        true => (&LINES[..], "--jsonl"),
+    let (documents, option) = if !args.jsonl {
+        (&DOCUMENTS[..], "--json")
+    } else {
+        (&LINES[..], "--jsonl")
     };
     let names: Vec<&str> = documents.iter().map(|(name, _)| *name).collect();
     if args.command.is_empty() {

@@ -161,9 +161,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
         output::write_file(path, page.as_bytes())?;
     }
     outputs.tell(&args.json, &tuned, || told(&tuned))?;
-    match is_worse && !args.force {
-        true => Err(worse(args, &before, &after)),
-        false => Ok(()),
+    if is_worse && !args.force {
+        Err(worse(args, &before, &after))
+    } else {
+        Ok(())
     }
 }
 

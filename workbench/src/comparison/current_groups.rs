@@ -39,10 +39,7 @@ impl CurrentGroups {
     /// Limits of the lift valve, or of the lowering valve, A; rising.
     #[must_use]
     pub fn limits_a(&self, is_lift: bool) -> &[f64] {
-        match is_lift {
-            true => &self.lift_a,
-            false => &self.lower_a,
-        }
+        if is_lift { &self.lift_a } else { &self.lower_a }
     }
 }
 

@@ -83,9 +83,10 @@ fn regime(run: &ReadyRun, sample: usize) -> Option<Part> {
 fn current(groups: &CurrentGroups, run: &ReadyRun, sample: usize) -> Part {
     let currents = run.drive.currents[sample];
     let is_lift = currents.lift_a >= currents.lower_a;
-    let (valve, amperes, place) = match is_lift {
-        true => ("lift", currents.lift_a, 0.0),
-        false => ("lower", currents.lower_a, 10.0),
+    let (valve, amperes, place) = if is_lift {
+        ("lift", currents.lift_a, 0.0)
+    } else {
+        ("lower", currents.lower_a, 10.0)
     };
     if amperes < groups.off_below_a {
         return Part {

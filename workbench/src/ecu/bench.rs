@@ -136,9 +136,12 @@ impl<'m> Bench<'m> {
 
     fn move_on(&mut self, reply: &Reply) {
         // The drivers are off without the enable signal.
-        let share = |compare: u16| match reply.enable {
-            true => f64::from(compare) / f64::from(BoardScaling::NOMINAL.pwm_steps),
-            false => 0.0,
+        let share = |compare: u16| {
+            if reply.enable {
+                f64::from(compare) / f64::from(BoardScaling::NOMINAL.pwm_steps)
+            } else {
+                0.0
+            }
         };
         self.plant
             .step([reply.lift, reply.lower].map(share), |_| {});

@@ -50,9 +50,10 @@ impl Pace {
         if lag > MOST_BEHIND {
             self.due = now;
         }
-        self.steady_ms = match lag > KEEPS_UP {
-            true => 0,
-            false => self.steady_ms.saturating_add(1),
+        self.steady_ms = if lag > KEEPS_UP {
+            0
+        } else {
+            self.steady_ms.saturating_add(1)
         };
         let change = match self.behind {
             false if lag > BEHIND => Some(PaceChange::FallsBehind),

@@ -76,9 +76,10 @@ impl ChannelFigures {
     pub fn late_ms(&self) -> String {
         // Less than half a millisecond is displayed as none.
         let late_ms = (1e3 * self.late_s).round() + 0.0;
-        match late_ms.is_finite() {
-            true => format!("{late_ms:.0}"),
-            false => "-".to_owned(),
+        if late_ms.is_finite() {
+            format!("{late_ms:.0}")
+        } else {
+            "-".to_owned()
         }
     }
 

@@ -103,9 +103,10 @@ impl Explanation {
     /// The campaign and the explained model as the reference of a comparison, with its error in sigma as it is shown.
     pub fn as_reference(&self, error: &str) -> String {
         let names: Vec<String> = self.steps.iter().map(|step| step.name()).collect();
-        let added = match names.is_empty() {
-            true => String::new(),
-            false => format!(" with {}", names.join(", ")),
+        let added = if names.is_empty() {
+            String::new()
+        } else {
+            format!(" with {}", names.join(", "))
         };
         let Head {
             campaign, model, ..

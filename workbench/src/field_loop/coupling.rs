@@ -68,9 +68,10 @@ impl<'m> Coupling<'m> {
         );
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            match self.depth_m(middle) > depth_m {
-                true => low = middle,
-                false => high = middle,
+            if self.depth_m(middle) > depth_m {
+                low = middle
+            } else {
+                high = middle
             }
         }
         low

@@ -270,9 +270,10 @@ impl Mapping {
             "pump_pressure_bar",
             "flow_lpm",
         ];
-        match measured.iter().any(|channel| self.has(channel)) {
-            true => Ok(()),
-            false => Err(missing(measured[0], "a run needs a measurement", columns)),
+        if measured.iter().any(|channel| self.has(channel)) {
+            Ok(())
+        } else {
+            Err(missing(measured[0], "a run needs a measurement", columns))
         }
     }
 }
@@ -333,8 +334,8 @@ fn proposal<'c>(
         [] => return Ok(None),
         [first, second, ..] if first.score == second.score => {
             let is_needed = words.channel.ends_with("current_a");
-            return match is_needed {
-                true => Err(Untold {
+            return if is_needed {
+                Err(Untold {
                     what: format!(
                         "{} may be {} or {}",
                         words.channel,
@@ -345,8 +346,9 @@ fn proposal<'c>(
                         "assign it, as in --map {0}=\"{1}\" or --map {0}=\"{2}\"",
                         words.channel, first.column.name, second.column.name
                     ),
-                }),
-                false => Ok(None),
+                })
+            } else {
+                Ok(None)
             };
         }
         [first, ..] => first,

@@ -47,9 +47,10 @@ pub fn cuts(run: &Run, steps: &[ClockStep]) -> Cuts {
     {
         // A flow bench has nothing that moves.
         let is_hitch = matches!(run.bench, Bench::Hitch { .. });
-        let rest = match is_hitch && begins_in_motion(run, begin, end) {
-            true => next_rest(run, begin, end),
-            false => Some(begin),
+        let rest = if is_hitch && begins_in_motion(run, begin, end) {
+            next_rest(run, begin, end)
+        } else {
+            Some(begin)
         };
         let moves = rest.map(|rest| moves(run, rest, end)).unwrap_or_default();
         let (from_s, to_s) = (after_s(begin), after_s(end - 1));

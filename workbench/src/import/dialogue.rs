@@ -89,9 +89,10 @@ enum Answer {
 /// The user's answer; asks again until it is valid.
 fn answer(columns: &[LogColumn], is_complete: bool) -> Result<Answer, Error> {
     loop {
-        output::print(match is_complete {
-            true => "Enter accepts, CHANNEL=NAME:UNIT changes a line, q stops: ",
-            false => "CHANNEL=NAME:UNIT assigns a column, q stops: ",
+        output::print(if is_complete {
+            "Enter accepts, CHANNEL=NAME:UNIT changes a line, q stops: "
+        } else {
+            "CHANNEL=NAME:UNIT assigns a column, q stops: "
         })?;
         let mut line = String::new();
         let read = io::stdin().read_line(&mut line);
@@ -120,9 +121,10 @@ fn understood(line: &str, columns: &[LogColumn]) -> Result<Answer, String> {
         return Err("write it as in lift_current_a=NAME:mA, or q".to_owned());
     };
     let (name, _) = check_source(&channel, &source)?;
-    match columns.iter().any(|column| column.name == name) {
-        true => Ok(Answer::Change(channel, source)),
-        false => Err(format!("there is no column \"{name}\"")),
+    if columns.iter().any(|column| column.name == name) {
+        Ok(Answer::Change(channel, source))
+    } else {
+        Err(format!("there is no column \"{name}\""))
     }
 }
 
@@ -181,9 +183,10 @@ fn line(taken: &Taken, width: usize) -> String {
         return format!("{named}  {reason}\n");
     }
     let reason = indented(reason, 6);
-    match named_length <= most {
-        true => format!("{}\n{reason}\n", named.trim_end()),
-        false => format!("  {channel}\n    {source}\n{reason}\n"),
+    if named_length <= most {
+        format!("{}\n{reason}\n", named.trim_end())
+    } else {
+        format!("  {channel}\n    {source}\n{reason}\n")
     }
 }
 

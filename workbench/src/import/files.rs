@@ -106,9 +106,10 @@ impl Files {
     #[must_use]
     pub fn can(&self, folder: &Path, signals: Option<&Mapping>) -> Option<String> {
         let (dbc, signals) = self.dbc.as_ref().zip(signals)?;
-        let identifiers = match self.is_j1939 {
-            true => "identifiers = \"j1939\"\n",
-            false => "",
+        let identifiers = if self.is_j1939 {
+            "identifiers = \"j1939\"\n"
+        } else {
+            ""
         };
         Some(format!(
             "\n[can]\ndbc = {}\n{identifiers}\n[can.signals]\n{}",

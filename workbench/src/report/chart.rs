@@ -205,9 +205,10 @@ fn area(band: &Band<'_>, x: &Scale, y: &Scale) -> String {
     let points = upper.chain(lower);
     let points = points.map(|(at, value)| format!("{} {}", px(x.px(*at)), px(y.px(*value))));
     let points: Vec<String> = points.collect();
-    match points.is_empty() {
-        true => String::new(),
-        false => format!("M{}Z", points.join("L")),
+    if points.is_empty() {
+        String::new()
+    } else {
+        format!("M{}Z", points.join("L"))
     }
 }
 

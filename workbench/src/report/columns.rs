@@ -24,13 +24,15 @@ const MISSING: char = '-';
 pub fn column(values: &[f64], resolution: f64) -> Value {
     let (low, high) = extent(values.iter().copied()).unwrap_or((0.0, 0.0));
     let least = SHARE * (high - low).max(SHARE * high.abs().max(low.abs()));
-    let wanted = match resolution.is_finite() && resolution > 0.0 {
-        true => resolution,
-        false => least,
+    let wanted = if resolution.is_finite() && resolution > 0.0 {
+        resolution
+    } else {
+        least
     };
-    let step = match wanted > 0.0 {
-        true => round_down(wanted),
-        false => 1.0,
+    let step = if wanted > 0.0 {
+        round_down(wanted)
+    } else {
+        1.0
     };
     let mut last = 0_i64;
     let mut differences = String::with_capacity(2 * values.len());

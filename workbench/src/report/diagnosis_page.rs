@@ -92,13 +92,14 @@ fn candidates(candidates: &[Candidate]) -> Markup {
             .map(ToString::to_string)
             .collect();
         let others = &candidate.indistinguishable;
-        let name = match others.is_empty() {
-            true => candidate.name(),
-            false => format!(
+        let name = if others.is_empty() {
+            candidate.name()
+        } else {
+            format!(
                 "{}\nnot to be told from {}",
                 candidate.name(),
                 others.join(", ")
-            ),
+            )
         };
         vec![
             name,

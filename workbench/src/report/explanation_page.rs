@@ -133,9 +133,10 @@ fn steps(steps: &[Step]) -> Markup {
     let row = |step: &Step| {
         let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
         let twins: Vec<String> = step.alternatives.iter().map(ToString::to_string).collect();
-        let name = match twins.is_empty() {
-            true => step.name(),
-            false => format!("{}\nnot to be told from {}", step.name(), twins.join(", ")),
+        let name = if twins.is_empty() {
+            step.name()
+        } else {
+            format!("{}\nnot to be told from {}", step.name(), twins.join(", "))
         };
         vec![
             name,

@@ -59,9 +59,10 @@ fn lines(cell: &str) -> Markup {
 
 /// A table, folded if it has many rows.
 pub fn folded(table: &Markup, rows: usize) -> Markup {
-    match rows > UNFOLDED_ROWS {
-        true => html! { details { summary { "Table of " (rows) " rows" } (table) } },
-        false => table.clone(),
+    if rows > UNFOLDED_ROWS {
+        html! { details { summary { "Table of " (rows) " rows" } (table) } }
+    } else {
+        table.clone()
     }
 }
 

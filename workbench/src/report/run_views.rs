@@ -62,8 +62,9 @@ pub fn conditions(run: &ReadyRun) -> String {
         Bench::Hitch { load_kg } => format!("{load_kg:.0} kg"),
         Bench::Flow { port_pressure_bar } => format!("flow bench at {port_pressure_bar:.0} bar"),
     };
-    match run.oil_temperature_known {
-        true => format!("{bench}, oil at {:.0} °C", run.oil_temperature_c),
-        false => format!("{bench}, oil temperature not measured"),
+    if run.oil_temperature_known {
+        format!("{bench}, oil at {:.0} °C", run.oil_temperature_c)
+    } else {
+        format!("{bench}, oil temperature not measured")
     }
 }

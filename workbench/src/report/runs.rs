@@ -43,9 +43,10 @@ fn plots(sorted: &[&RunView]) -> Vec<Option<Value>> {
             return None;
         }
         whole += view.time_s.len();
-        let drawn = match whole <= WHOLE_SAMPLES {
-            true => (*view).clone(),
-            false => envelope(view, COLUMNS),
+        let drawn = if whole <= WHOLE_SAMPLES {
+            (*view).clone()
+        } else {
+            envelope(view, COLUMNS)
         };
         let data = data(&drawn);
         all += data.to_string().len();
@@ -86,21 +87,23 @@ fn is_changed(view: &RunView) -> bool {
 
 fn entries(view: &RunView) -> Vec<(Stroke, &'static str)> {
     let measured = (Stroke::Measured, "measured");
-    match is_changed(view) {
-        true => vec![
+    if is_changed(view) {
+        vec![
             measured,
             (Stroke::Before, "model before"),
             (Stroke::After, "model after"),
-        ],
-        false => vec![measured, (Stroke::After, "simulated")],
+        ]
+    } else {
+        vec![measured, (Stroke::After, "simulated")]
     }
 }
 
 /// The run in the form of the page of `hitch serve`.
 fn data(view: &RunView) -> Value {
-    let names = match is_changed(view) {
-        true => json!({ "first": "model before", "simulated": "model after" }),
-        false => json!({}),
+    let names = if is_changed(view) {
+        json!({ "first": "model before", "simulated": "model after" })
+    } else {
+        json!({})
     };
     json!({
         "names": names,

@@ -178,9 +178,10 @@ async fn back(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     if open.job.is_some() {
         return Err(busy());
     }
-    match open.back() {
-        true => Ok(Json(json!({}))),
-        false => Err(Refusal::conflict("there is no earlier first model")),
+    if open.back() {
+        Ok(Json(json!({})))
+    } else {
+        Err(Refusal::conflict("there is no earlier first model"))
     }
 }
 

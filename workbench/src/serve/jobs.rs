@@ -45,9 +45,10 @@ impl Reporter {
 
     /// Whether a search goes on: until it is cancelled.
     pub fn goes_on(&self) -> ControlFlow<()> {
-        match self.cancelled.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if self.cancelled.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
         }
     }
 

@@ -22,15 +22,12 @@ pub fn held(
     let name = effect.parameters().get(parameter)?.name;
     let mut held = estimate.clone();
     let key = (effect.id(), parameter);
-    let verb = match fixed {
-        true => {
-            held.fixed.insert(key);
-            "Fixed"
-        }
-        false => {
-            held.fixed.remove(&key);
-            "Freed"
-        }
+    let verb = if fixed {
+        held.fixed.insert(key);
+        "Fixed"
+    } else {
+        held.fixed.remove(&key);
+        "Freed"
     };
     Some((held, format!("{verb} {name} of {}", full_name(effect))))
 }

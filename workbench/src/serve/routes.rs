@@ -225,9 +225,10 @@ async fn go(State(sessions): Known, Json(to): Json<Go>) -> Answer {
             "a computation is running; wait for it or cancel it",
         ));
     }
-    match open.go(to.at) {
-        true => Ok(Json(json!({}))),
-        false => Err(Refusal::conflict("the step no longer exists")),
+    if open.go(to.at) {
+        Ok(Json(json!({})))
+    } else {
+        Err(Refusal::conflict("the step no longer exists"))
     }
 }
 

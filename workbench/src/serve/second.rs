@@ -35,9 +35,10 @@ impl Second {
 
     /// The model before and the model after, of this and the present one.
     pub fn ordered<'a>(&'a self, present: &'a Evaluated) -> [&'a Evaluated; 2] {
-        match self.is_after {
-            true => [present, &self.evaluated],
-            false => [&self.evaluated, present],
+        if self.is_after {
+            [present, &self.evaluated]
+        } else {
+            [&self.evaluated, present]
         }
     }
 }

@@ -288,13 +288,12 @@ impl Ready {
 
 /// Whether the time of a search is one.
 fn check_search(search: &Search) -> Result<(), Refusal> {
-    match BUDGETS_S.contains(&search.budget_s) {
-        true => Ok(()),
-        false => {
-            let (low, high) = (BUDGETS_S.start(), BUDGETS_S.end());
-            let what = format!("the time limit is {low} to {high} s");
-            Err(Refusal::wrong(json!({ "what": what })))
-        }
+    if BUDGETS_S.contains(&search.budget_s) {
+        Ok(())
+    } else {
+        let (low, high) = (BUDGETS_S.start(), BUDGETS_S.end());
+        let what = format!("the time limit is {low} to {high} s");
+        Err(Refusal::wrong(json!({ "what": what })))
     }
 }
 
@@ -313,8 +312,9 @@ fn new_effect(session: &Session, name: &str) -> Result<&'static dyn Effect, Refu
 /// The effect, if the session's model does not have it.
 fn lacking(session: &Session, effect: &'static dyn Effect) -> Result<&'static dyn Effect, Refusal> {
     let mut present = session.fit().estimate.effects.iter();
-    match present.any(|added| added.effect.id() == effect.id()) {
-        true => Err(Refusal::conflict("the model has this effect already")),
-        false => Ok(effect),
+    if present.any(|added| added.effect.id() == effect.id()) {
+        Err(Refusal::conflict("the model has this effect already"))
+    } else {
+        Ok(effect)
     }
 }

@@ -101,9 +101,12 @@ fn lines(row: &[String], widths: &[usize]) -> Vec<String> {
     let cells: Vec<String> = row
         .iter()
         .zip(widths)
-        .map(|(cell, width)| match visible(cell) > *width {
-            true => broken(cell, *width, "", ""),
-            false => cell.clone(),
+        .map(|(cell, width)| {
+            if visible(cell) > *width {
+                broken(cell, *width, "", "")
+            } else {
+                cell.clone()
+            }
         })
         .collect();
     let height = cells.iter().map(|cell| cell.lines().count()).max();

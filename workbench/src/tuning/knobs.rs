@@ -31,9 +31,12 @@ const MOST_DOUBLINGS: f64 = 2.0;
 /// The values that a set of moves, and of presses of the button, can tune; each only if it is not empty.
 #[must_use]
 pub fn tuned_by(moves: bool, presses: bool) -> Vec<&'static str> {
-    let acts = |knob: &&str| match knob.starts_with(RATE) {
-        true => presses,
-        false => moves,
+    let acts = |knob: &&str| {
+        if knob.starts_with(RATE) {
+            presses
+        } else {
+            moves
+        }
     };
     KNOBS.into_iter().filter(acts).collect()
 }
@@ -67,9 +70,10 @@ pub fn with_values(
     for (key, doublings) in knobs.iter().zip(point) {
         let found = scalar(base, key)?;
         let factor = doublings.clamp(-MOST_DOUBLINGS, MOST_DOUBLINGS).exp2();
-        let low = match *key == least.knob {
-            true => least.value.clamp(found.low, found.high),
-            false => found.low,
+        let low = if *key == least.knob {
+            least.value.clamp(found.low, found.high)
+        } else {
+            found.low
         };
         let value = (found.value * factor).clamp(low, found.high);
         set(&mut calibration, &format!("{key}={value}")).ok()?;

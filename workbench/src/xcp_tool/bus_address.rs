@@ -57,9 +57,10 @@ impl BusAddress {
     /// Reads an address; `link_type` returns the type of the network interface with a name, `None` without one.
     fn parse(text: &str, link_type: impl Fn(&str) -> Option<Link>) -> Result<Self, String> {
         if let Some(address) = text.strip_prefix("tcp:") {
-            return match is_host_and_port(address) {
-                true => Ok(Self::Tcp(address.to_owned())),
-                false => Err(format!("`{address}` is not HOST:PORT; {FORMS}")),
+            return if is_host_and_port(address) {
+                Ok(Self::Tcp(address.to_owned()))
+            } else {
+                Err(format!("`{address}` is not HOST:PORT; {FORMS}"))
             };
         }
         // Paths below /dev/serial/by-path contain colons.

@@ -80,12 +80,13 @@ pub fn write_calibration(
     let same = wanted
         .iter()
         .all(|(index, value)| stored.get(*index) == Some(value));
-    match same {
-        true => Ok(Written {
+    if same {
+        Ok(Written {
             words: wanted.len(),
             changed,
-        }),
-        false => Err(ToolError::NotStored),
+        })
+    } else {
+        Err(ToolError::NotStored)
     }
 }
 

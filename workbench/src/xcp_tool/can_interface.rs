@@ -59,9 +59,10 @@ impl CanInterface {
 
 /// A data frame for the interface; `None` for a remote frame.
 fn to_socket(frame: &Frame) -> Option<CanDataFrame> {
-    match frame.is_remote() {
-        true => None,
-        false => CanDataFrame::new(frame.id(), frame.data()),
+    if frame.is_remote() {
+        None
+    } else {
+        CanDataFrame::new(frame.id(), frame.data())
     }
 }
 

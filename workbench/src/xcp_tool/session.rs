@@ -96,11 +96,12 @@ impl Session {
         let mut session = Self { client, ecu };
         session.command(&[0xFF, 0])?;
         let identity = session.read(IDENTITY_BASE, IDENTITY.len())?;
-        match identity == IDENTITY {
-            true => Ok(session),
-            false => Err(ToolError::OtherEcu(
+        if identity == IDENTITY {
+            Ok(session)
+        } else {
+            Err(ToolError::OtherEcu(
                 String::from_utf8_lossy(&identity).into_owned(),
-            )),
+            ))
         }
     }
 

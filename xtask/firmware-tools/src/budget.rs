@@ -102,9 +102,10 @@ pub fn check(entries: &[Entry]) -> Result<()> {
 
 fn judge(entry: &Entry, golden: &[Entry]) -> Result<()> {
     let name = &entry.name;
-    let flash_bytes = match name == EMULATED {
-        true => u64::MAX,
-        false => FLASH_BYTES,
+    let flash_bytes = if name == EMULATED {
+        u64::MAX
+    } else {
+        FLASH_BYTES
     };
     for (what, takes, may) in [
         ("flash", entry.flash, flash_bytes),
@@ -123,9 +124,10 @@ fn judge(entry: &Entry, golden: &[Entry]) -> Result<()> {
         ("RAM", entry.ram, known.ram),
         ("stack", entry.stack, known.stack),
     ] {
-        let tolerated = match takes > took {
-            true => GROWTH_PER_MILLE,
-            false => SHRINKAGE_PER_MILLE,
+        let tolerated = if takes > took {
+            GROWTH_PER_MILLE
+        } else {
+            SHRINKAGE_PER_MILLE
         };
         ensure!(
             takes.abs_diff(took) * 1_000 <= took * tolerated,

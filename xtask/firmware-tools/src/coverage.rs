@@ -168,9 +168,10 @@ fn judge(regions: &[Region]) -> Result<()> {
     let mut sources = 0;
     for covered in COVERED {
         let path = workspace::root().join(covered);
-        sources += match path.is_dir() {
-            true => fs::read_dir(path)?.count(),
-            false => 1,
+        sources += if path.is_dir() {
+            fs::read_dir(path)?.count()
+        } else {
+            1
         };
     }
     if files.len() != sources {

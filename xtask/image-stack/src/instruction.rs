@@ -317,9 +317,10 @@ impl Parts<'_> {
             return Ok(Flow::CallByAddress);
         }
         if self.is(&[ARM_INS_BX]) {
-            return Ok(match self.register(0) == Some(LINK) {
-                true => Flow::Return,
-                false => Flow::JumpByAddress,
+            return Ok(if self.register(0) == Some(LINK) {
+                Flow::Return
+            } else {
+                Flow::JumpByAddress
             });
         }
         if self.is(&[ARM_INS_TBB, ARM_INS_TBH]) {

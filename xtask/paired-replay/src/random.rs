@@ -269,9 +269,10 @@ impl RandomMachine {
         let at = |place: Option<usize>| place.map_or(0, |place| answer[place]);
         let places = &self.places;
         self.answered = [at(places.lift_current), at(places.lower_current)];
-        let [lift, lower] = match self.follows_envelope {
-            true => [at(places.envelope_lift), at(places.envelope_lower)],
-            false => self.answered,
+        let [lift, lower] = if self.follows_envelope {
+            [at(places.envelope_lift), at(places.envelope_lower)]
+        } else {
+            self.answered
         };
         self.hitch.step(lift, lower);
         self.powers_up |= differs;

@@ -65,13 +65,14 @@ impl ValveAdaptation {
 
     /// One step of a move; the recorder once the move is finished. `rests`: see [`MoveRecorder::step`].
     pub fn follow(&mut self, rests: bool, motion: &MotionObserver) -> Option<MoveRecorder> {
-        match self
+        if self
             .recorder
             .as_mut()?
             .step(rests, motion.model_speed(), motion.slope())
         {
-            true => self.recorder.take(),
-            false => None,
+            self.recorder.take()
+        } else {
+            None
         }
     }
 

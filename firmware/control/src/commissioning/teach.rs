@@ -345,13 +345,14 @@ impl Teach {
         if self.finished < RAMPS {
             return Ok(());
         }
-        match self
+        if self
             .shifts
             .iter()
             .all(|shifts| spread(shifts) <= parameters.most_spread)
         {
-            true => Ok(()),
-            false => Err(TeachError::Spread),
+            Ok(())
+        } else {
+            Err(TeachError::Spread)
         }
     }
 

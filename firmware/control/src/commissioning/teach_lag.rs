@@ -86,9 +86,10 @@ pub fn found(
     };
     let delay = real.saturating_sub(usual.0.saturating_mul(8) / 5_000);
     let lag = Millisecond(mul_div(known.0, delay, Divisor::at_least_one(twin)));
-    match (lag - known).magnitude() > limit {
-        true => known,
-        false => lag,
+    if (lag - known).magnitude() > limit {
+        known
+    } else {
+        lag
     }
 }
 

@@ -241,9 +241,10 @@ impl Control {
             &calibration.position,
             &calibration.hold,
         );
-        let next = match held_back {
-            true => next.limited_to_speed_of(self.phase),
-            false => next,
+        let next = if held_back {
+            next.limited_to_speed_of(self.phase)
+        } else {
+            next
         };
         if next.is_moving() && !self.phase.is_moving() {
             self.motion
@@ -269,9 +270,10 @@ impl Control {
             _ => self.motion.damping(direction),
         };
         // At full demand the valve is fully open, whatever the bias. Below it the bias is limited to the margin.
-        let bias = match bias > MicrometrePerSecond::ZERO {
-            true => bias.min((self.available - speed).max(MicrometrePerSecond::ZERO)),
-            false => bias,
+        let bias = if bias > MicrometrePerSecond::ZERO {
+            bias.min((self.available - speed).max(MicrometrePerSecond::ZERO))
+        } else {
+            bias
         };
         let speed = (speed - bias + correction).limited(MicrometrePerSecond(1), self.available);
         MicrometrePerSecond(direction.sign(speed.0))

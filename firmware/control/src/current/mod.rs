@@ -66,14 +66,16 @@ impl Regulation {
         parameters: &CurrentParameters,
     ) -> Duties {
         let next = self.phase.next();
-        self.phase = match next < parameters.dither_period {
-            true => next,
-            false => Millisecond::ZERO,
+        self.phase = if next < parameters.dither_period {
+            next
+        } else {
+            Millisecond::ZERO
         };
         let up = self.phase + self.phase < parameters.dither_period;
-        let dither = match up {
-            true => parameters.dither_amplitude,
-            false => -parameters.dither_amplitude,
+        let dither = if up {
+            parameters.dither_amplitude
+        } else {
+            -parameters.dither_amplitude
         };
         let supply = inputs
             .supply

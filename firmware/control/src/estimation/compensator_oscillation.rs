@@ -149,9 +149,10 @@ impl CompensatorOscillation {
                 ..
             }
         );
-        match lifts && self.is_detected() {
-            true => Pole::OSCILLATING,
-            false => Pole::USUAL,
+        if lifts && self.is_detected() {
+            Pole::OSCILLATING
+        } else {
+            Pole::USUAL
         }
     }
 

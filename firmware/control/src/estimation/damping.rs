@@ -66,9 +66,10 @@ mod tests {
                 swing = 20_000.0;
             }
             damping.step(position_nm as i32);
-            let demand = match damped {
-                true => f64::from(damping.demand(SPEED).0),
-                false => 0.0,
+            let demand = if damped {
+                f64::from(damping.demand(SPEED).0)
+            } else {
+                0.0
             };
             if step == 499 {
                 assert!(demand.abs() <= 4.0, "nothing swings yet: {demand}");

@@ -50,9 +50,10 @@ impl FreeFall {
         let share = settled_coarse.divide(coarse_squared(speed));
         let held = mul_div(self.fall.0, share, settled_coarse);
         let next = speed + self.fall - MicrometrePerSecond(held);
-        match speed < settled {
-            true => next.min(settled),
-            false => next.max(settled),
+        if speed < settled {
+            next.min(settled)
+        } else {
+            next.max(settled)
         }
     }
 

@@ -106,13 +106,14 @@ impl MotionObserver {
 
     /// Moves the position by one step; its correction by a sensor without lag.
     fn direct_correction(&mut self, measured_nm: i32, parameters: &MotionParameters) -> Correction {
-        let (time, bias_time) = match self.sinking > MicrometrePerSecond::ZERO {
-            true => (parameters.lowering_time, parameters.lowering_time),
-            false => (
+        let (time, bias_time) = if self.sinking > MicrometrePerSecond::ZERO {
+            (parameters.lowering_time, parameters.lowering_time)
+        } else {
+            (
                 parameters.position_time,
                 self.oscillation
                     .bias_time(parameters.position_time, self.model_speed),
-            ),
+            )
         };
         let position_time = time.divisor();
         self.position_nm = self.position_nm.saturating_add(self.speed().0);
@@ -182,9 +183,10 @@ impl MotionObserver {
         }
         let [lift, lower] = self.lags;
         let sinks = self.sinking > MicrometrePerSecond::ZERO;
-        let (usual, lag) = match sinks {
-            true => (parameters.lowering_trail, lower),
-            false => (parameters.lift_trail, lift),
+        let (usual, lag) = if sinks {
+            (parameters.lowering_trail, lower)
+        } else {
+            (parameters.lift_trail, lift)
         };
         let measured_nm = measured.0.saturating_mul(1000);
         self.lag_regression
@@ -341,9 +343,10 @@ impl MotionObserver {
             self.scale_bias_with_flow(before);
         }
         self.spools = [lift, lower];
-        self.slope = match down > MicroLitrePerSecond::ZERO {
-            true => lower_slope,
-            false => lift_slope,
+        self.slope = if down > MicroLitrePerSecond::ZERO {
+            lower_slope
+        } else {
+            lift_slope
         };
     }
 
@@ -428,13 +431,15 @@ impl MotionObserver {
         let speed = self.opening_speed + self.bias;
         let [lift, lower] = self.lags(hydraulics);
         let [lift_delay, lower_delay] = self.closing_delays;
-        let (lag, delay) = match self.opening_speed < MicrometrePerSecond::ZERO {
-            true => (lower, lower_delay),
-            false => (lift, lift_delay),
+        let (lag, delay) = if self.opening_speed < MicrometrePerSecond::ZERO {
+            (lower, lower_delay)
+        } else {
+            (lift, lift_delay)
         };
-        let delay = match self.uses_closing_delay {
-            true => delay.delay(),
-            false => MillisecondQ3(0),
+        let delay = if self.uses_closing_delay {
+            delay.delay()
+        } else {
+            MillisecondQ3(0)
         };
         let lag = (lag + self.lag_correction).max(MillisecondQ3(0));
         let within = |time| distance_in(time, speed);
@@ -453,9 +458,10 @@ impl MotionObserver {
     #[must_use]
     pub fn closing_share(&self, closing: &ClosingCurves) -> i32 {
         let [lift, lower] = self.spools;
-        match self.model_speed < MicrometrePerSecond::ZERO {
-            true => closing.lower.share(lower),
-            false => closing.lift.share(lift),
+        if self.model_speed < MicrometrePerSecond::ZERO {
+            closing.lower.share(lower)
+        } else {
+            closing.lift.share(lift)
         }
     }
 }

@@ -15,9 +15,10 @@ pub struct RestPosition {
 impl RestPosition {
     /// One step. `rests`: the hitch rests, and its position is known.
     pub fn update(&mut self, position: Micrometre, rests: bool, parameters: &HoldParameters) {
-        let time = match rests && self.started {
-            true => parameters.rest_time.divisor(),
-            false => Divisor::ONE,
+        let time = if rests && self.started {
+            parameters.rest_time.divisor()
+        } else {
+            Divisor::ONE
         };
         self.started = true;
         let error = position

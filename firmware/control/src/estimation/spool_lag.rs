@@ -61,9 +61,10 @@ impl SpoolLagEstimator {
     /// Additional lag, if moves of this valve have identified it; otherwise zero.
     #[must_use]
     pub fn identified(&self) -> MillisecondQ3 {
-        match self.weight > INITIAL_WEIGHT {
-            true => self.additional_lag,
-            false => MillisecondQ3(0),
+        if self.weight > INITIAL_WEIGHT {
+            self.additional_lag
+        } else {
+            MillisecondQ3(0)
         }
     }
 
@@ -236,9 +237,10 @@ mod tests {
                 model += (opening - model) / lag_ms;
                 truth += (opening - truth) / (40.0 + self.slower_ms);
                 let flow = flow(model);
-                let slope = match flow > 0.0 && flow < OPEN {
-                    true => SLOPE,
-                    false => MicroLitrePerSecond::ZERO,
+                let slope = if flow > 0.0 && flow < OPEN {
+                    SLOPE
+                } else {
+                    MicroLitrePerSecond::ZERO
                 };
                 expected_nm += flow;
                 way_nm += self::flow(truth - self.late * FULL) * (1.0 + self.flow_error);

@@ -229,9 +229,10 @@ impl PositionControl {
             && ahead_of(stop_prediction.predicted_stop_after_cut(motion.closing_share(closing)))
                 <= band;
         let approach = approach_speed(remaining, deceleration, parameters.approach_gain);
-        let speed = match cut {
-            true => MicrometrePerSecond::ZERO,
-            false => approach.max(parameters.creep_speed).min(limit),
+        let speed = if cut {
+            MicrometrePerSecond::ZERO
+        } else {
+            approach.max(parameters.creep_speed).min(limit)
         };
         Demand {
             direction,

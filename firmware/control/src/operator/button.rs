@@ -82,9 +82,12 @@ impl ButtonGuard {
     }
 
     fn count(&mut self, reading: Reading) {
-        let next = |is: bool, time: Millisecond, most: Millisecond| match is {
-            true => time.next().min(most),
-            false => Millisecond::ZERO,
+        let next = |is: bool, time: Millisecond, most: Millisecond| {
+            if is {
+                time.next().min(most)
+            } else {
+                Millisecond::ZERO
+            }
         };
         self.released_for = next(reading == Reading::Released, self.released_for, STEADY);
         self.unclear_for = next(reading == Reading::Unclear, self.unclear_for, ON_THE_WAY);

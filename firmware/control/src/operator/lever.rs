@@ -26,9 +26,10 @@ impl SteadyLever {
     pub fn follow(&mut self, sample: MilliDegree, noise_band: MilliDegree) -> MilliDegree {
         let away = sample - MilliDegree(self.fine >> BITS);
         self.fine = self.fine.saturating_add(away.0);
-        let noise_band = match away.magnitude() > STEP_LIMIT {
-            true => MilliDegree::ZERO,
-            false => noise_band,
+        let noise_band = if away.magnitude() > STEP_LIMIT {
+            MilliDegree::ZERO
+        } else {
+            noise_band
         };
         let steady =
             MilliDegree(self.fine >> BITS).limited(sample - noise_band, sample + noise_band);

@@ -34,9 +34,10 @@ impl EngineWatch {
             self.running_for = Millisecond::ZERO;
             return !self.was_known && parameters.engine_required.0 == 0;
         };
-        self.running_for = match speed > parameters.engine_running {
-            true => self.running_for.next().min(parameters.engine_settling),
-            false => Millisecond::ZERO,
+        self.running_for = if speed > parameters.engine_running {
+            self.running_for.next().min(parameters.engine_settling)
+        } else {
+            Millisecond::ZERO
         };
         self.running_for >= parameters.engine_settling && speed > parameters.engine_running
     }
@@ -75,9 +76,10 @@ impl QuickLift {
     /// The set point: the lever's, or the raised one.
     #[must_use]
     pub fn set_point(&self, lever: MilliDegree, parameters: &OperatorParameters) -> MilliDegree {
-        match self.raised {
-            true => parameters.quick_lift_angle,
-            false => lever,
+        if self.raised {
+            parameters.quick_lift_angle
+        } else {
+            lever
         }
     }
 }
@@ -107,9 +109,10 @@ impl Float {
             };
             return self.floating;
         }
-        self.lifted_for = match lever >= parameters.float_exit {
-            true => self.lifted_for.next(),
-            false => Millisecond::ZERO,
+        self.lifted_for = if lever >= parameters.float_exit {
+            self.lifted_for.next()
+        } else {
+            Millisecond::ZERO
         };
         self.floating =
             lever < parameters.float_exit || self.lifted_for < parameters.float_exit_time;

@@ -73,9 +73,10 @@ impl DraftSignal {
             self.filter.reset();
         }
         let filtered = Newton(self.filter.step(draft.0, self.corner(moves, parameters)));
-        self.in_soil = match self.in_soil {
-            false => filtered > parameters.soil_draft,
-            true => filtered + filtered > parameters.soil_draft,
+        self.in_soil = if !self.in_soil {
+            filtered > parameters.soil_draft
+        } else {
+            filtered + filtered > parameters.soil_draft
         };
         Draft::Measured(filtered)
     }
@@ -89,9 +90,10 @@ impl DraftSignal {
     }
 
     const fn corner(&self, moves: bool, parameters: &DraftParameters) -> MilliHertz {
-        match moves && !self.in_soil {
-            true => parameters.raised_filter,
-            false => parameters.work_filter,
+        if moves && !self.in_soil {
+            parameters.raised_filter
+        } else {
+            parameters.work_filter
         }
     }
 }
@@ -115,9 +117,10 @@ fn forces(inputs: &Inputs, parameters: &DraftParameters) -> Result<Newton, Troub
     let draft = left + right;
     let share = parameters.difference_share.0;
     let allowed = parameters.difference + draft.magnitude().scaled(share, Divisor::THOUSAND);
-    match (left - right).magnitude() > allowed {
-        true => Err(Trouble::PinsDisagree),
-        false => Ok(draft),
+    if (left - right).magnitude() > allowed {
+        Err(Trouble::PinsDisagree)
+    } else {
+        Ok(draft)
     }
 }
 
@@ -130,9 +133,10 @@ struct Still {
 
 impl Still {
     fn step(&mut self, sample: Option<SupplyShare>) -> Millisecond {
-        self.since = match sample == self.last {
-            true => self.since.next(),
-            false => Millisecond::ZERO,
+        self.since = if sample == self.last {
+            self.since.next()
+        } else {
+            Millisecond::ZERO
         };
         self.last = sample;
         self.since

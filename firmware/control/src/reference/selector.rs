@@ -72,10 +72,13 @@ impl Active {
                 Some(errors) if function != choice.function => choice.begun(errors, gains),
                 _ => self,
             },
-            Self::Holds(mut hold) => match hold.is_over(choice.lever, lock) {
-                true => Self::Lever,
-                false => Self::Holds(hold),
-            },
+            Self::Holds(mut hold) => {
+                if hold.is_over(choice.lever, lock) {
+                    Self::Lever
+                } else {
+                    Self::Holds(hold)
+                }
+            }
         }
     }
 }

@@ -118,9 +118,10 @@ impl RideDamping {
     ) -> MicrometrePerSecond {
         let present = self.demand.unwrap_or(MicrometrePerSecond::ZERO);
         let is_open = present.0.signum() == wanted.0.signum();
-        match is_open || wanted.magnitude() >= parameters.dead_band {
-            true => wanted,
-            false => MicrometrePerSecond::ZERO,
+        if is_open || wanted.magnitude() >= parameters.dead_band {
+            wanted
+        } else {
+            MicrometrePerSecond::ZERO
         }
     }
 }

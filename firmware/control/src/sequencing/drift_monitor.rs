@@ -47,9 +47,10 @@ impl DriftMonitor {
     ) -> Result<(), Fault> {
         // A speed in um/s is the way of a millisecond in nm.
         self.travel_nm = self.travel_nm.saturating_add(speed.magnitude().0);
-        match self.travel_nm > parameters.corrected_travel.0.saturating_mul(1000) {
-            true => Err(Fault::Sinking),
-            false => Ok(()),
+        if self.travel_nm > parameters.corrected_travel.0.saturating_mul(1000) {
+            Err(Fault::Sinking)
+        } else {
+            Ok(())
         }
     }
 

@@ -29,9 +29,10 @@ pub fn is_at_end_of_travel(lifts: bool, sensed: &Sensed, calibration: &Calibrati
         let empty = |pressure| pressure <= hydraulics.smallest_drop;
         sensed.cylinder_pressure.is_none_or(empty)
     };
-    match lifts {
-        true => sensed.angle >= position.upper_limit - END_ZONE,
-        false => sensed.angle <= position.lower_limit + END_ZONE || is_unloaded(),
+    if lifts {
+        sensed.angle >= position.upper_limit - END_ZONE
+    } else {
+        sensed.angle <= position.lower_limit + END_ZONE || is_unloaded()
     }
 }
 

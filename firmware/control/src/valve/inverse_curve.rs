@@ -227,9 +227,10 @@ mod tests {
     fn crowded(saturation: i32, wide_gap: usize) -> ValveTable {
         let gap = ValveTable::least_gap_of(MicroLitrePerSecond(saturation)).0;
         let points: [_; 32] = core::array::from_fn(|at| {
-            let flow = match at <= wide_gap {
-                true => at as i32 * gap,
-                false => saturation - (31 - at as i32) * gap,
+            let flow = if at <= wide_gap {
+                at as i32 * gap
+            } else {
+                saturation - (31 - at as i32) * gap
             };
             (flow, 900 + at as i32 * gap.min(30))
         });

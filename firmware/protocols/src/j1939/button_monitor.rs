@@ -28,17 +28,15 @@ impl ButtonMonitor {
     pub fn update(&mut self, inputs: &Inputs, operator: &OperatorParameters) -> Troubles {
         let closed = inputs.jog.is_some();
         let contradicting = operator.second_contact.0 != 0 && contradict(inputs);
-        let counted = |is: bool, ms: u16| match is {
-            true => ms.saturating_add(1),
-            false => 0,
-        };
+        let counted = |is: bool, ms: u16| if is { ms.saturating_add(1) } else { 0 };
         self.closed_ms = counted(closed && !contradicting, self.closed_ms);
         self.released_ms = counted(!closed && !contradicting, self.released_ms);
         self.contradicting_ms = counted(contradicting, self.contradicting_ms);
         self.was_released |= self.released_ms >= RELEASED_MS;
-        let longest_ms = match self.was_released {
-            true => CLOSED_MS,
-            false => CLOSED_AT_START_MS,
+        let longest_ms = if self.was_released {
+            CLOSED_MS
+        } else {
+            CLOSED_AT_START_MS
         };
         let mut found = Troubles::NONE;
         if self.contradicting_ms >= CONTRADICTING_MS {

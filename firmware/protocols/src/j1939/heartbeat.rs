@@ -99,9 +99,10 @@ impl Monitor {
         Some(Self {
             last: number,
             heard_ms: now_ms,
-            good: match in_order && in_time {
-                true => self.good.saturating_add(1).min(MENDED_BY),
-                false => 0,
+            good: if in_order && in_time {
+                self.good.saturating_add(1).min(MENDED_BY)
+            } else {
+                0
             },
             ..self
         })

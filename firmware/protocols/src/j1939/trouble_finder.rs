@@ -124,9 +124,10 @@ impl EngineSpeedMonitor {
         let is_present = inputs.engine_speed.is_some();
         self.known |= is_present;
         let is_missing = !is_present && (self.known || lock.engine_required.0 != 0);
-        self.missing_ms = match is_missing {
-            true => self.missing_ms.saturating_add(1).min(SPEED_LOST_MS),
-            false => 0,
+        self.missing_ms = if is_missing {
+            self.missing_ms.saturating_add(1).min(SPEED_LOST_MS)
+        } else {
+            0
         };
         self.missing_ms >= SPEED_LOST_MS
     }
@@ -145,9 +146,10 @@ impl SpeedMonitor {
             trouble,
             Some(field::Trouble::GroundSpeed | field::Trouble::WheelSpeed)
         );
-        self.missing_ms = match is_missing {
-            true => self.missing_ms.saturating_add(1).min(SPEED_LOST_MS),
-            false => 0,
+        self.missing_ms = if is_missing {
+            self.missing_ms.saturating_add(1).min(SPEED_LOST_MS)
+        } else {
+            0
         };
         self.missing_ms >= SPEED_LOST_MS
     }

@@ -102,10 +102,10 @@ impl<F: NorFlash> FaultHistory<F> {
     fn lacks(&self, trouble: Trouble, occurrences: &Occurrences) -> bool {
         let of = |counts: &Occurrences| counts.get(trouble as usize).copied().unwrap_or(0);
         let (stored, count) = (of(&self.stored), of(occurrences));
-        match count < stored {
-            // Counts fall only when they are cleared.
-            true => true,
-            false => count > stored && !self.written.contains(trouble),
+        if count < stored {
+            true
+        } else {
+            count > stored && !self.written.contains(trouble)
         }
     }
 }

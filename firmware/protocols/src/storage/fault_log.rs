@@ -221,9 +221,10 @@ impl<F: NorFlash> FaultLog<F> {
     fn program(&mut self, page: usize, index: usize, slot: Slot) -> Result<(), LogError> {
         let at = self.address(page, index);
         let written = self.flash.write(at, &slot);
-        match written.is_ok() && self.read(page, index) == Ok(slot) {
-            true => Ok(()),
-            false => Err(LogError::Flash),
+        if written.is_ok() && self.read(page, index) == Ok(slot) {
+            Ok(())
+        } else {
+            Err(LogError::Flash)
         }
     }
 

@@ -187,9 +187,10 @@ impl<F: NorFlash> CalibrationStore<F> {
         // A first storing that is cut leaves one copy blank, and no machine block, which is written last.
         let stored = states.iter().any(|state| state.machine.is_good())
             || !states.iter().any(CopyState::is_blank);
-        let safety = match stored {
-            true => SafetySource::Lost,
-            false => SafetySource::Factory,
+        let safety = if stored {
+            SafetySource::Lost
+        } else {
+            SafetySource::Factory
         };
         (ValidCalibration::nominal(), safety)
     }
@@ -324,9 +325,10 @@ impl<F: NorFlash> CalibrationStore<F> {
     fn without_any(&mut self) -> (usize, u32, u32) {
         let [first, second] = self.states();
         let is_damaged = |state: &CopyState| state.copy() == Copy::Damaged;
-        let (copy, stays) = match is_damaged(&second) && !is_damaged(&first) {
-            true => (1, first),
-            false => (0, second),
+        let (copy, stays) = if is_damaged(&second) && !is_damaged(&first) {
+            (1, first)
+        } else {
+            (0, second)
         };
         let after = |block: BlockState| block.sequence().unwrap_or(0).wrapping_add(1);
         (copy, after(stays.machine), after(stays.safety))

@@ -159,9 +159,10 @@ impl Machine {
         // Both copies are complete now.
         self.other = None;
         self.pending.clear();
-        match is_degraded {
-            true => self.pending.extend(before),
-            false => self.other = before,
+        if is_degraded {
+            self.pending.extend(before)
+        } else {
+            self.other = before
         }
         self.used = Some((number, copy));
     }

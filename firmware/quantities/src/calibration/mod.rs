@@ -305,9 +305,10 @@ impl Calibration {
         // A speed in um/s is the way of a millisecond in nm.
         let most = Divisor::at_least_one(speed.0).quotient(EXTRA_TRAVEL.unsigned_abs());
         let most = Millisecond(most.cast_signed());
-        match found > most {
-            true => Err(CalibrationError::AngleLag { found, most }),
-            false => Ok(()),
+        if found > most {
+            Err(CalibrationError::AngleLag { found, most })
+        } else {
+            Ok(())
         }
     }
 

@@ -251,9 +251,10 @@ impl Inputs {
             .iter()
             .rev()
             .fold(0, |bits, field| (bits << 1) | u32::from(field.is_some()));
-        let line = match self.enable_line_fault {
-            true => ENABLE_LINE_FAULT,
-            false => 0,
+        let line = if self.enable_line_fault {
+            ENABLE_LINE_FAULT
+        } else {
+            0
         };
         valid | self.switches.to_bits() | line
     }

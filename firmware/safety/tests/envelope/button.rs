@@ -67,9 +67,10 @@ impl Buttons {
                     inputs.jog = jog.map(MilliDegreePerSecond);
                     inputs.switches = switches;
                 });
-                self.rig.speed = match passed.lift > MilliAmp(0) {
-                    true => FULL_SPEED,
-                    false => 0,
+                self.rig.speed = if passed.lift > MilliAmp(0) {
+                    FULL_SPEED
+                } else {
+                    0
                 };
                 passed != CoilCurrents::OFF
             })

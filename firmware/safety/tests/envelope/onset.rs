@@ -26,9 +26,10 @@ impl Onset {
     }
 
     fn order(&self, lift: i32, lower: i32) -> Order {
-        match self.way > 0 {
-            true => Order::Lift(lift),
-            false => Order::Lower(lower),
+        if self.way > 0 {
+            Order::Lift(lift)
+        } else {
+            Order::Lower(lower)
         }
     }
 

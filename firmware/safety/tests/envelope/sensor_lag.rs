@@ -39,9 +39,10 @@ fn within<'a>(safety: &'a SafetyParameters, sensors: &'a SensorParameters) -> Li
 /// Piston speed by the valve curve, um/s.
 fn speed(order: Order) -> i32 {
     let currents = order.currents();
-    let flow = match currents.lift > MilliAmp::ZERO {
-        true => NOMINAL.lift.flow(currents.lift),
-        false => NOMINAL.lower.flow(currents.lower),
+    let flow = if currents.lift > MilliAmp::ZERO {
+        NOMINAL.lift.flow(currents.lift)
+    } else {
+        NOMINAL.lower.flow(currents.lower)
     };
     piston_speed(flow, NOMINAL.hydraulics.piston_area).0
 }

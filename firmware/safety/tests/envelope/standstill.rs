@@ -170,9 +170,10 @@ fn a_controller_that_takes_back_current_does_not_hide_a_frozen_sensor() {
 
 /// Travel that a hitch of the nominal calibration is given at 90 degrees by a current in a step, degree.
 fn given_deg(passed: CoilCurrents) -> f64 {
-    let (table, current) = match passed.lift > MilliAmp(0) {
-        true => (&NOMINAL.lift, passed.lift),
-        false => (&NOMINAL.lower, passed.lower),
+    let (table, current) = if passed.lift > MilliAmp(0) {
+        (&NOMINAL.lift, passed.lift)
+    } else {
+        (&NOMINAL.lower, passed.lower)
     };
     let piston = piston_speed(table.flow(current), NOMINAL.hydraulics.piston_area);
     f64::from(piston.0) * 1e-3 / um_per_deg()

@@ -126,9 +126,10 @@ impl Chip {
     fn read_stuck(&self, stuck: u32, address: u32) -> u32 {
         let at = (address & 0xFFC) as usize;
         let word = u32::from_le_bytes([0, 1, 2, 3].map(|index| self.stuck_page[at + index]));
-        match address & !3 == stuck & !3 {
-            true => word & !(1 << 9),
-            false => word,
+        if address & !3 == stuck & !3 {
+            word & !(1 << 9)
+        } else {
+            word
         }
     }
 

@@ -195,11 +195,10 @@ impl Chip {
     /// Notes whether a coil is driven after something has changed at the outputs.
     fn watch_outputs(&mut self) {
         let driven = self.output(ENABLE) && (self.duty(0) > 0.0 || self.duty(1) > 0.0);
-        match driven {
-            true => self.off_since_ns = None,
-            false => {
-                self.off_since_ns.get_or_insert(self.now_ns);
-            }
+        if driven {
+            self.off_since_ns = None
+        } else {
+            self.off_since_ns.get_or_insert(self.now_ns);
         }
     }
 

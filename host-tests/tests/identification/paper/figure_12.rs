@@ -55,9 +55,10 @@ fn travel_s(model: &Model, valve: Valve, current_a: f64, load_kg: f64) -> Option
     for step in 0..(LONGEST_S / STEP_S) as usize {
         let now_m = to_go_m(&plant);
         if now_m <= 0.0 {
-            let share = match before_m > now_m {
-                true => before_m / (before_m - now_m),
-                false => 1.0,
+            let share = if before_m > now_m {
+                before_m / (before_m - now_m)
+            } else {
+                1.0
             };
             return Some((step as f64 - 1.0 + share) * STEP_S);
         }

@@ -93,9 +93,10 @@ fn boundary_a(holds: impl Fn(f64) -> bool) -> f64 {
     let (mut below_a, mut above_a) = (0.0, HIGHEST_A);
     for _ in 0..HALVINGS {
         let middle_a = 0.5 * (below_a + above_a);
-        match holds(middle_a) {
-            true => above_a = middle_a,
-            false => below_a = middle_a,
+        if holds(middle_a) {
+            above_a = middle_a
+        } else {
+            below_a = middle_a
         }
     }
     above_a

@@ -63,9 +63,10 @@ impl Motion {
         ] = state;
         let lift = flow_m3_s(&LIFT_CURVE, lift_spool_a);
         let lower = flow_m3_s(&LOWER_CURVE, lower_spool_a);
-        let asked_pa = match lift > 0.0 {
-            true => (pressure_pa + MARGIN_PA).min(LIMIT_PA),
-            false => STANDBY_PA,
+        let asked_pa = if lift > 0.0 {
+            (pressure_pa + MARGIN_PA).min(LIMIT_PA)
+        } else {
+            STANDBY_PA
         };
         let lifted = orifice(lift, pump_pa - pressure_pa - CRACKING_PA, LIFT_REFERENCE_PA);
         let leaked = self.wear.leakage_m3_s(pressure_pa);

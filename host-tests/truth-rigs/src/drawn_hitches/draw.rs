@@ -63,9 +63,10 @@ pub fn draw(seed: u64, moves: usize) -> Drawn {
         lower_shift_a: random.random_range(-MOST_SHIFT_A..MOST_SHIFT_A),
         ..Physics::default()
     };
-    let fidelity = match structured {
-        true => Fidelity::Structured,
-        false => Fidelity::Faithful,
+    let fidelity = if structured {
+        Fidelity::Structured
+    } else {
+        Fidelity::Faithful
     };
     let sizes = [
         ("solenoid-hysteresis", random.random_range(0.05..0.2)),

@@ -81,9 +81,10 @@ pub fn table(title: &str, moves: &[&MoveFigures]) -> String {
     for figure in &FIGURES {
         let [median, high, largest] = spread(moves, figure.of);
         text += &format!("{:28}{median:9.2}{high:9.2}{largest:9.2}", figure.name);
-        text += &match figure.bar.is_finite() {
-            true => format!("{:11.1} %\n", 100.0 * beyond(moves, figure)),
-            false => "\n".to_owned(),
+        text += &if figure.bar.is_finite() {
+            format!("{:11.1} %\n", 100.0 * beyond(moves, figure))
+        } else {
+            "\n".to_owned()
         };
     }
     text
@@ -140,9 +141,10 @@ fn line(moved: &MoveFigures, machine: Option<&Drawn>) -> String {
             physics.lower_shift_a,
             conditions.spool_lag_s * 1e3,
             physics.air_ratio * 100.0,
-            match machine.readings.pressures {
-                true => "pressures",
-                false => "no pressures",
+            if machine.readings.pressures {
+                "pressures"
+            } else {
+                "no pressures"
             }
         );
     }

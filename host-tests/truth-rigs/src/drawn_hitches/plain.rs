@@ -49,9 +49,12 @@ impl Plain {
         if share < 1.0 {
             self.integral_deg += ahead_deg * 1e-3 / INTEGRAL_S;
         }
-        let current = |way: f64, threshold_a: f64, full_a: f64| match self.way == way {
-            true => threshold_a + share.min(1.0) * (full_a - threshold_a),
-            false => 0.0,
+        let current = |way: f64, threshold_a: f64, full_a: f64| {
+            if self.way == way {
+                threshold_a + share.min(1.0) * (full_a - threshold_a)
+            } else {
+                0.0
+            }
         };
         [
             current(1.0, LIFT_TABLE.threshold_a, SATURATION_A[0]),

@@ -62,9 +62,10 @@ impl Case {
         if !drawn.structured {
             drawn.conditions.spool_lag_s = random.random_range(0.020..0.055);
         }
-        let kind = match random.random::<bool>() {
-            true => Kind::HoldsLast,
-            false => Kind::Trembles,
+        let kind = if random.random::<bool>() {
+            Kind::HoldsLast
+        } else {
+            Kind::Trembles
         };
         let way_deg = (drawn.angles_deg[1] - drawn.angles_deg[0]).abs();
         let longest_ms = 100.0 + way_deg * SLOW_MS_PER_DEG;

@@ -49,14 +49,13 @@ struct Surroundings {
 impl Surroundings {
     /// True if ground or an end stop is in the way from a place, degree, towards a lever that far away.
     fn holds(&self, rocker_deg: f64, far_deg: f64) -> bool {
-        match far_deg > 0.0 {
-            true => rocker_deg > 135.0,
-            false => {
-                rocker_deg < 45.0
-                    || self
-                        .ground_deg
-                        .is_some_and(|ground| rocker_deg < ground + 0.5)
-            }
+        if far_deg > 0.0 {
+            rocker_deg > 135.0
+        } else {
+            rocker_deg < 45.0
+                || self
+                    .ground_deg
+                    .is_some_and(|ground| rocker_deg < ground + 0.5)
         }
     }
 }

@@ -128,9 +128,10 @@ fn classical<'a>(
     let length = number(line, count, radix, MOST_BYTES as u32)? as usize;
     // Up to 15 it is a data length code as in classical frames; some tools write it for CAN FD as well.
     let is_flexible = length > MOST_CODE;
-    let length = match is_flexible {
-        true => length,
-        false => length.min(MOST_CLASSICAL),
+    let length = if is_flexible {
+        length
+    } else {
+        length.min(MOST_CLASSICAL)
     };
     data(line, 6, radix, &mut bytes[..length])?;
     Ok(Some((line.text(1), id, length)))

@@ -183,15 +183,16 @@ impl Description {
         let range = number(found.max) - number(found.min);
         let period_s = (range + found.factor) * (signal.factor / found.factor);
         let is_a_clock = period_s.is_finite() && period_s > SHORTEST_ROUND_S;
-        match is_a_clock {
-            true => Ok(Some((signal, period_s))),
-            false => Err((
+        if is_a_clock {
+            Ok(Some((signal, period_s)))
+        } else {
+            Err((
                 format!(
                     "signal {} wraps around within {SHORTEST_ROUND_S} s",
                     signal.name
                 ),
                 "set its range in the dbc, or use another clock".to_owned(),
-            )),
+            ))
         }
     }
 

@@ -33,9 +33,10 @@ pub enum Id {
 impl Id {
     /// An identifier of the given kind, if it is in range.
     pub fn new(raw: u32, is_extended: bool) -> Option<Self> {
-        match is_extended {
-            true => (raw <= LARGEST_EXTENDED).then_some(Self::Extended(raw)),
-            false => (raw <= LARGEST_STANDARD).then_some(Self::Standard(raw)),
+        if is_extended {
+            (raw <= LARGEST_EXTENDED).then_some(Self::Extended(raw))
+        } else {
+            (raw <= LARGEST_STANDARD).then_some(Self::Standard(raw))
         }
     }
 

@@ -71,13 +71,15 @@ impl Frames {
     }
 
     fn data(&self, row: &StringRecord) -> Option<Vec<u8>> {
-        let text: String = match self.is_split {
-            true => row.iter().skip(self.data).collect(),
-            false => row.get(self.data)?.to_owned(),
+        let text: String = if self.is_split {
+            row.iter().skip(self.data).collect()
+        } else {
+            row.get(self.data)?.to_owned()
         };
-        let data = match self.is_base64 {
-            true => of_base64(&text)?,
-            false => of_hex(text.trim_start_matches("0x"))?,
+        let data = if self.is_base64 {
+            of_base64(&text)?
+        } else {
+            of_hex(text.trim_start_matches("0x"))?
         };
         (data.len() <= MOST_BYTES).then_some(data)
     }

@@ -29,9 +29,10 @@ pub fn is_one(path: &Path) -> bool {
 
 fn open(path: &Path) -> falcon_mdf::Result<(Mf4File, Ending)> {
     let recording = Recording::open(path, true)?;
-    let ending = match recording.is_cut_off {
-        true => Ending::CutOff,
-        false => Ending::Whole,
+    let ending = if recording.is_cut_off {
+        Ending::CutOff
+    } else {
+        Ending::Whole
     };
     Ok((Mf4File::from_source(recording)?, ending))
 }

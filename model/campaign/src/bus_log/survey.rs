@@ -80,15 +80,16 @@ pub fn signals(
     }
     if columns.is_empty() {
         let name = dbc.path.display();
-        let (what, mend) = match is_heard {
-            false => (
+        let (what, mend) = if !is_heard {
+            (
                 format!("contains no message of {name}"),
                 "name the DBC of this bus",
-            ),
-            true => (
+            )
+        } else {
+            (
                 format!("contains no signal of {name} in a unit of a run"),
                 "correct the units in the DBC: A, mA, bar, kPa, deg, l/min and the like",
-            ),
+            )
         };
         return Err(source.error(what, mend));
     }

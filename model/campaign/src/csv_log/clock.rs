@@ -177,9 +177,10 @@ impl DateOrder {
             steps.fold(0.0, f64::max)
         };
         let [day, month] = [Self::DayFirst, Self::MonthFirst].map(longest_step);
-        let order = match month < day {
-            true => Self::MonthFirst,
-            false => Self::DayFirst,
+        let order = if month < day {
+            Self::MonthFirst
+        } else {
+            Self::DayFirst
         };
         (order, day != month)
     }

@@ -205,9 +205,12 @@ impl<'s> Layout<'s> {
         let mut times = Times::new(None, self.orders[column]);
         let values: Vec<f64> = filled
             .iter()
-            .filter_map(|text| match is_clock(text) {
-                true => times.read(text),
-                false => self.decimals[column].number(text),
+            .filter_map(|text| {
+                if is_clock(text) {
+                    times.read(text)
+                } else {
+                    self.decimals[column].number(text)
+                }
             })
             .collect();
         Seen {
@@ -298,11 +301,10 @@ impl<'s> Layout<'s> {
             record.len(),
             self.header.width
         );
-        let mend = match is_long {
-            true => {
-                "each cell needs a name above it: name all columns in the header, and separate the columns by semicolons if numbers have a decimal comma"
-            }
-            false => "write the separators of empty cells too",
+        let mend = if is_long {
+            "each cell needs a name above it: name all columns in the header, and separate the columns by semicolons if numbers have a decimal comma"
+        } else {
+            "write the separators of empty cells too"
         };
         Some(self.source.error_at(byte, what, mend))
     }

@@ -262,16 +262,17 @@ fn value(
     };
     let value = taken.scale.apply(number, linkage);
     let empty = "leave the cell of a dropout empty";
-    column
-        .checked(value)
-        .map_err(|(would_be, range)| match taken.is_own {
-            true => (
+    column.checked(value).map_err(|(would_be, range)| {
+        if taken.is_own {
+            (
                 format!("{value} in column {name} is out of range"),
                 format!("{range}; {empty}"),
-            ),
-            false => (
+            )
+        } else {
+            (
                 format!("{} in column {} {would_be}", quote(cell), quote(name)),
                 format!("{range}: check the unit under [columns], and {empty}"),
-            ),
-        })
+            )
+        }
+    })
 }

@@ -181,15 +181,18 @@ fn of_matrix(name: &str, [rows, columns]: [usize; 2], values: &[f64]) -> Vec<Num
     if count == 1 {
         return vec![column(name.to_owned(), values.to_vec())];
     }
-    let part = |index: usize| match rows == length {
-        true => column(
-            format!("{name}(:,{})", index + 1),
-            values[index * rows..(index + 1) * rows].to_vec(),
-        ),
-        false => column(
-            format!("{name}({},:)", index + 1),
-            values.iter().skip(index).step_by(rows).copied().collect(),
-        ),
+    let part = |index: usize| {
+        if rows == length {
+            column(
+                format!("{name}(:,{})", index + 1),
+                values[index * rows..(index + 1) * rows].to_vec(),
+            )
+        } else {
+            column(
+                format!("{name}({},:)", index + 1),
+                values.iter().skip(index).step_by(rows).copied().collect(),
+            )
+        }
     };
     (0..count).map(part).collect()
 }

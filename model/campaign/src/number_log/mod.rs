@@ -77,23 +77,20 @@ impl NumberLog {
     pub fn survey(&self) -> Survey {
         let is_timed = |column: &&NumberColumn| column.times.is_some();
         let timed: Vec<LogColumn> = self.columns.iter().filter(is_timed).map(listed).collect();
-        match timed.is_empty() {
-            true => {
-                let mut columns: Vec<LogColumn> = self.columns.iter().map(listed).collect();
-                for (column, base) in columns.iter_mut().zip(&self.bases) {
-                    column.times = base.map(|base| self.columns[base].name.clone());
-                }
-                let notes = self.notes.clone();
-                Survey::Table { columns, notes }
+        if timed.is_empty() {
+            let mut columns: Vec<LogColumn> = self.columns.iter().map(listed).collect();
+            for (column, base) in columns.iter_mut().zip(&self.bases) {
+                column.times = base.map(|base| self.columns[base].name.clone());
             }
-            false => {
-                let mut columns = self.columns.iter().filter(is_timed);
-                let is_assumed = columns.any(|column| !column.states_times);
-                let note = "assumed s: the times of its series, which state no unit";
-                Survey::Channels {
-                    columns: timed,
-                    notes: is_assumed.then(|| note.to_owned()).into_iter().collect(),
-                }
+            let notes = self.notes.clone();
+            Survey::Table { columns, notes }
+        } else {
+            let mut columns = self.columns.iter().filter(is_timed);
+            let is_assumed = columns.any(|column| !column.states_times);
+            let note = "assumed s: the times of its series, which state no unit";
+            Survey::Channels {
+                columns: timed,
+                notes: is_assumed.then(|| note.to_owned()).into_iter().collect(),
             }
         }
     }
@@ -133,9 +130,10 @@ impl NumberLog {
         }
         let unit = |index: usize| self.columns[index].unit.as_deref();
         let main_scale = time.scale(unit(main)).ok();
-        let scale = match base == main {
-            true => main_scale,
-            false => time_base::scale(unit(base), main_scale),
+        let scale = if base == main {
+            main_scale
+        } else {
+            time_base::scale(unit(base), main_scale)
         };
         Ok((&found.values, Times::new(scale, DateOrder::default())))
     }

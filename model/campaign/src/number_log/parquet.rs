@@ -27,9 +27,10 @@ pub fn read(bytes: Vec<u8>) -> std::result::Result<Vec<NumberColumn>, Fault> {
     let read = catch_unwind(AssertUnwindSafe(|| columns(bytes)));
     let read = read.unwrap_or_else(|_| Err(broken("its pages")));
     let columns = read.map_err(|error| (format!("cannot be read as Parquet: {error}"), MEND))?;
-    match columns.is_empty() {
-        true => Err(("contains no column of numbers".to_owned(), MEND)),
-        false => Ok(columns),
+    if columns.is_empty() {
+        Err(("contains no column of numbers".to_owned(), MEND))
+    } else {
+        Ok(columns)
     }
 }
 
@@ -188,9 +189,12 @@ fn add_typed<T: DataType>(
             continue;
         }
         let mut present = present.iter();
-        values.extend(levels.iter().map(|&level| match level == deepest {
-            true => present.next().map_or(f64::NAN, &number),
-            false => f64::NAN,
+        values.extend(levels.iter().map(|&level| {
+            if level == deepest {
+                present.next().map_or(f64::NAN, &number)
+            } else {
+                f64::NAN
+            }
         }));
     }
 }

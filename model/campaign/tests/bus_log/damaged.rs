@@ -84,10 +84,7 @@ proptest! {
         of_vector in any::<bool>(),
         damages in prop::collection::vec(damage(), 1..6),
     ) {
-        let (name, log) = match of_vector {
-            true => ("a.asc", asc(20, "absolute")),
-            false => ("a.log", candump(20)),
-        };
+        let (name, log) = if of_vector { ("a.asc", asc(20, "absolute")) } else { ("a.log", candump(20)) };
         let manifest = MANIFEST.replace("a.log", name);
         let files = [("campaign.toml", manifest), (name, log)];
         is_read_or_refused(&damaged(&files, 1, &damages))?;

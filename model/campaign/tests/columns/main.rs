@@ -437,10 +437,7 @@ proptest! {
         in_mdf in any::<bool>(),
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
     ) {
-        let (file, mut bytes, columns) = match in_mdf {
-            true => ("log.mf4", mdf(Some(WriteCodec::TransposedDeflate)), OF_MDF),
-            false => ("bench.csv", table("Timestamp,I lift,I lower [A],p cyl,phi [deg]", ",", plain).into_bytes(), ENGLISH),
-        };
+        let (file, mut bytes, columns) = if in_mdf { ("log.mf4", mdf(Some(WriteCodec::TransposedDeflate)), OF_MDF) } else { ("bench.csv", table("Timestamp,I lift,I lower [A],p cyl,phi [deg]", ",", plain).into_bytes(), ENGLISH) };
         for (place, byte) in edits {
             let place = place.index(bytes.len());
             bytes[place] = byte;

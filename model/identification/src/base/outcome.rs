@@ -187,9 +187,10 @@ fn improved(problem: &BaseProblem<'_>, point: Point, coarse: bool) -> Point {
     };
     let estimate = with_effects_of(&model, point.estimate.clone());
     let weights = Weights::new(Problem::new(problem.experiment, &model), &estimate);
-    let weights = match coarse {
-        true => weights.scaled(COARSE),
-        false => weights,
+    let weights = if coarse {
+        weights.scaled(COARSE)
+    } else {
+        weights
     };
     let mut point = descend(problem, &weights, &point, JACOBIANS);
     if let Some(model) = problem.model(&point.theta) {
@@ -223,13 +224,14 @@ fn posterior(problem: &BaseProblem<'_>, point: &Point) -> (Vec<f64>, Vec<bool>) 
             let largest = prior.sigma[unknown];
             let precision = problem.precision(&prior.precision);
             let sigma = sigma_of(&information + precision, unknown, largest);
-            let alone = match parameter.is_flow() {
-                true => sigma,
-                false => sigma_of(
+            let alone = if parameter.is_flow() {
+                sigma
+            } else {
+                sigma_of(
                     information + problem.precision(&prior.widened(WIDER, unknown)),
                     unknown,
                     largest,
-                ),
+                )
             };
             (sigma, alone <= DETERMINED * largest)
         })

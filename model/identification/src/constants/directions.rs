@@ -44,9 +44,10 @@ impl Directions {
         };
         let columns: Vec<DVector<f64>> = order.iter().map(column).collect();
         Self {
-            columns: match columns.is_empty() {
-                true => DMatrix::zeros(size, 0),
-                false => DMatrix::from_columns(&columns),
+            columns: if columns.is_empty() {
+                DMatrix::zeros(size, 0)
+            } else {
+                DMatrix::from_columns(&columns)
             },
             parameters,
             prior,

@@ -44,10 +44,7 @@ impl FreeConstants {
     /// Number of coordinates that a fit moves: none while they are held.
     #[must_use]
     pub fn free(&self) -> usize {
-        match self.is_held {
-            true => 0,
-            false => self.errors.len(),
-        }
+        if self.is_held { 0 } else { self.errors.len() }
     }
 
     /// The same constants, held in a fit or not.

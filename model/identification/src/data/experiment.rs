@@ -62,9 +62,10 @@ impl Experiment {
             current_noise: sigma,
             jumps_within_s,
             current_persistence: persistence,
-            clocks_within_s: match campaign.synchronous {
-                true => 0.0,
-                false => LARGEST_OFFSET_S,
+            clocks_within_s: if campaign.synchronous {
+                0.0
+            } else {
+                LARGEST_OFFSET_S
             },
             ringing: model.constants().dynamics == Dynamics::Dynamic,
         }
@@ -98,9 +99,10 @@ impl Experiment {
             runs,
             ..self.without_runs()
         };
-        match 2 * condensed.samples() < self.samples() {
-            true => condensed,
-            false => self.clone(),
+        if 2 * condensed.samples() < self.samples() {
+            condensed
+        } else {
+            self.clone()
         }
     }
 

@@ -173,9 +173,12 @@ impl ReadyRun {
                 .map(|first| self.regimes[first])
                 .collect(),
             averaged: stretches.sizes(),
-            widened: self.widened.each_ref().map(|all| match all.is_empty() {
-                true => Vec::new(),
-                false => stretches.firsts().map(|first| all[first]).collect(),
+            widened: self.widened.each_ref().map(|all| {
+                if all.is_empty() {
+                    Vec::new()
+                } else {
+                    stretches.firsts().map(|first| all[first]).collect()
+                }
             }),
             traces: self.traces.emptied(stretches.len()),
             defect_correction: None,

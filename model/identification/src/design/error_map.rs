@@ -141,9 +141,12 @@ fn cell(currents: Currents, angle_deg: Option<f64>, model: &Model, levels: &Leve
     });
     let driven = shares.into_iter().find(|(_, share)| *share > 0.0);
     let (low_rad, high_rad) = model.linkage().swing_rad();
-    let place = angle_deg.map(|deg| match deg.is_nan() {
-        true => 0.5,
-        false => (deg.to_radians() - low_rad) / (high_rad - low_rad),
+    let place = angle_deg.map(|deg| {
+        if deg.is_nan() {
+            0.5
+        } else {
+            (deg.to_radians() - low_rad) / (high_rad - low_rad)
+        }
     });
     Cell {
         driven: driven.map(|(lifts, share)| (lifts, part(share, OPENINGS))),

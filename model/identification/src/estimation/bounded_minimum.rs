@@ -91,9 +91,12 @@ fn inward(
     ranges: &[(f64, f64)],
 ) -> Option<usize> {
     let downhill = pull - matrix * point;
-    let inwards = |&index: &usize| match point[index] > 0.5 * (ranges[index].0 + ranges[index].1) {
-        true => -downhill[index],
-        false => downhill[index],
+    let inwards = |&index: &usize| {
+        if point[index] > 0.5 * (ranges[index].0 + ranges[index].1) {
+            -downhill[index]
+        } else {
+            downhill[index]
+        }
     };
     let negligible = |index: usize| ROUNDING * pull[index].abs().max(f64::MIN_POSITIVE);
     let held = (0..held.len()).filter(|&index| held[index]);

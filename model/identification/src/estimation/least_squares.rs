@@ -84,9 +84,10 @@ pub(crate) fn descend(
         slow = Some(columns);
         let before = point.cost;
         let simulated = jacobian.shared.iter().filter(|shared| !shared.has_prior());
-        let most_kept = match simulated.count() >= WORTH_KEEPING {
-            true => MOST_KEPT,
-            false => 0,
+        let most_kept = if simulated.count() >= WORTH_KEEPING {
+            MOST_KEPT
+        } else {
+            0
         };
         for kept in 0..=most_kept {
             let Some(taken) = problem.step(&jacobian, &point, damping) else {

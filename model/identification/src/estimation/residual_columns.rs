@@ -121,8 +121,9 @@ pub(super) fn central_quotients(
         (moved.get(parameter), residuals)
     };
     let ((low, below), (high, above)) = rayon::join(|| side(-step), || side(step));
-    match high > low {
-        true => quotients(&below, above, (high - low) / estimate.scale(parameter)),
-        false => below.iter().map(|run| vec![0.0; run.len()]).collect(),
+    if high > low {
+        quotients(&below, above, (high - low) / estimate.scale(parameter))
+    } else {
+        below.iter().map(|run| vec![0.0; run.len()]).collect()
     }
 }

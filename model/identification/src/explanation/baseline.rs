@@ -214,10 +214,12 @@ impl Pair<'_> {
     /// Correlation of the discrepancies of both runs by sample, from the measured states.
     fn alike(&self, seen: &Seen) -> Vec<f64> {
         let (own, its) = (states(self.run), states(self.baseline));
-        let alike = |sample: usize| match sample < self.samples() && self.has_same_current(sample) {
-            // Both have the same angle in time if they have the same flow; its discrepancy is taken by increments.
-            true => seen.likeness(&own[sample], &its[sample]),
-            false => 0.0,
+        let alike = |sample: usize| {
+            if sample < self.samples() && self.has_same_current(sample) {
+                seen.likeness(&own[sample], &its[sample])
+            } else {
+                0.0
+            }
         };
         (0..self.run.len()).map(alike).collect()
     }
@@ -236,9 +238,10 @@ impl Seen {
                 }
                 let squares: [f64; 4] = std::array::from_fn(|channel| {
                     let at = channel * run.len() + sample;
-                    match scales[at] > 0.0 {
-                        true => residuals[at].powi(2),
-                        false => f64::NAN,
+                    if scales[at] > 0.0 {
+                        residuals[at].powi(2)
+                    } else {
+                        f64::NAN
                     }
                 });
                 for (largest, square) in largest.iter_mut().zip(squares) {
@@ -411,9 +414,12 @@ fn left(problem: Problem<'_>, fit: &Fit) -> Vec<[Vec<f64>; 4]> {
                 return Vec::new();
             };
             let simulated = trace.channel(channel);
-            let left = |sample: usize| match scales[channel.index() * run.len() + sample] > 0.0 {
-                true => measured[sample] - simulated[sample],
-                false => f64::NAN,
+            let left = |sample: usize| {
+                if scales[channel.index() * run.len() + sample] > 0.0 {
+                    measured[sample] - simulated[sample]
+                } else {
+                    f64::NAN
+                }
             };
             (0..run.len()).map(left).collect()
         })

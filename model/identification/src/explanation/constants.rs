@@ -118,9 +118,10 @@ pub(crate) fn search_with_constants(
     }
     let suspected = |search: &Search| {
         let fewer = search.slightly_worse_with_fewer();
-        match problem.experiment.is_beside_baseline() || options.is_over() {
-            true => None,
-            false => suspected(problem, search.present(), &fewer),
+        if problem.experiment.is_beside_baseline() || options.is_over() {
+            None
+        } else {
+            suspected(problem, search.present(), &fewer)
         }
     };
     let mut found = suspected(&declared);
@@ -145,16 +146,17 @@ pub(crate) fn search_with_constants(
     while comparison.is_open(declared.present()) && declared.advance(options.limit) {}
     let off = comparison.probability_off(declared.present());
     let declared = declared.found();
-    match off > 0.5 {
-        true => Searched {
+    if off > 0.5 {
+        Searched {
             found: free,
             corrected: Some(corrected),
             other: Some((1.0 - off, declared.probabilities(problem))),
-        },
-        false => Searched {
+        }
+    } else {
+        Searched {
             found: declared,
             corrected: None,
             other: Some((off, free.probabilities(problem))),
-        },
+        }
     }
 }

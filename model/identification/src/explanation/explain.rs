@@ -195,13 +195,12 @@ pub fn explain_with(problem: Problem<'_>, options: Options<'_>, progress: Progre
     let before = fit_base(problem);
     let adopted = !model.effects.is_empty();
     let refitted = adopted.then(|| fit_freely(problem));
-    let mut searched = match enough(&before) {
-        true => {
-            let limit = options.limit.of_search();
-            let options = Options { limit, ..options };
-            search_with_constants(problem.within(limit), &before, options, progress)
-        }
-        false => Searched::declared(Found::nothing(&before)),
+    let mut searched = if enough(&before) {
+        let limit = options.limit.of_search();
+        let options = Options { limit, ..options };
+        search_with_constants(problem.within(limit), &before, options, progress)
+    } else {
+        Searched::declared(Found::nothing(&before))
     };
     progress("how sure that is");
     let names = Names::of(options.constants);
@@ -259,17 +258,19 @@ fn steps(
     let mut steps: Vec<ExplanationStep> = Vec::new();
     for (count, &effect) in found.order.iter().enumerate() {
         let last = count + 1 == found.order.len();
-        let fit = match last {
-            true => found.fit.clone(),
-            false => with_some(problem, found, &found.order[..=count]),
+        let fit = if last {
+            found.fit.clone()
+        } else {
+            with_some(problem, found, &found.order[..=count])
         };
         let (error_before, held_out_before) = match steps.last() {
             Some(step) => (step.error_after, step.held_out_after),
             None => (start.error(), held_out(problem, start)),
         };
-        let held_out_after = match last {
-            true => found.held_out,
-            false => held_out(problem, &fit),
+        let held_out_after = if last {
+            found.held_out
+        } else {
+            held_out(problem, &fit)
         };
         let candidate = weighed_alone(problem, whole.clone(), effect);
         let estimate = &found.fit.estimate;

@@ -64,9 +64,10 @@ impl Walk {
             }
             let at_a_stop = time_s[sample] - left_s <= AFTER_A_STOP_S;
             walk.at_a_stop.push(at_a_stop);
-            walk.steps_deg.push(match at_a_stop && free_deg > 0.0 {
-                true => AT_A_STOP_DEG.max(deg),
-                false => free_deg,
+            walk.steps_deg.push(if at_a_stop && free_deg > 0.0 {
+                AT_A_STOP_DEG.max(deg)
+            } else {
+                free_deg
             });
             if distance_deg < AT_A_STOP_DEG {
                 deg = AT_A_STOP_DEG;

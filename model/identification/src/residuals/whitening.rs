@@ -166,9 +166,10 @@ impl RunWeights {
         let contact_mask = contact_mask(run, model, [&below, &above]);
         let is_discontinuous = |sample: usize| walk.at_a_stop[sample] || contact_mask[sample];
         let ringing = experiment.ringing;
-        let late_s = match ringing && run.on_hitch() {
-            true => timing_errors_s(run, model, &below, &walk.deg),
-            false => vec![0.0; run.len()],
+        let late_s = if ringing && run.on_hitch() {
+            timing_errors_s(run, model, &below, &walk.deg)
+        } else {
+            vec![0.0; run.len()]
         };
         for channel in [
             Channel::PumpPressure,

@@ -27,9 +27,10 @@ impl<'a> Coarse<'a> {
         let fitted = present.estimate.applied_to(model);
         let nuisances = &present.estimate.nuisances;
         let few = experiment.condensed(&fitted, nuisances);
-        let seen = match few.samples() < experiment.samples() {
-            true => evaluate(problem.on(&few), present.estimate.clone()),
-            false => present.clone(),
+        let seen = if few.samples() < experiment.samples() {
+            evaluate(problem.on(&few), present.estimate.clone())
+        } else {
+            present.clone()
         };
         let coarse_in_time = few.coarse_in_time(&fitted, nuisances);
         Self {

@@ -114,9 +114,10 @@ impl DictionaryBuilder<'_> {
         let rough = self.screen(self.coarse.with_coarse_steps(), &jacobian, &here);
         let new = rough.columns(self.effects.clone());
         let forms = self.other_forms(&fine, &own);
-        let changed = match self.changes {
-            true => self.changed(&rough),
-            false => Vec::new(),
+        let changed = if self.changes {
+            self.changed(&rough)
+        } else {
+            Vec::new()
         };
         drop((fine, rough));
         let entries = own.into_iter().chain(forms).chain(new).chain(changed);
@@ -243,9 +244,10 @@ fn in_form(added: &AddedEffect, form: &'static dyn Effect) -> Vec<AddedEffect> {
     let other = added.in_form(form);
     let size = &form.parameters()[0];
     let mut own = added.effect.parameters().iter();
-    match own.any(|parameter| parameter.name == size.name) {
-        true => vec![other],
-        false => SMALL_SIZES.map(|share| scaled(&other, share)).to_vec(),
+    if own.any(|parameter| parameter.name == size.name) {
+        vec![other]
+    } else {
+        SMALL_SIZES.map(|share| scaled(&other, share)).to_vec()
     }
 }
 

@@ -25,9 +25,10 @@ const NEARLY_WHOLE: f64 = 0.01;
 /// The better of a fit and of the fits from nearby sizes of an effect, by its index, unless its cost is smooth over its size.
 pub(crate) fn line_searched(problem: Problem<'_>, fit: Fit, index: usize) -> Fit {
     let added = &fit.estimate.effects[index];
-    let reaches = match added.is_null() {
-        false => reaches(added.effect.size_response(), problem.experiment.ringing),
-        true => &[],
+    let reaches = if !added.is_null() {
+        reaches(added.effect.size_response(), problem.experiment.ringing)
+    } else {
+        &[]
     };
     let along = |fit: Fit| {
         reaches.iter().fold(fit, |fit, &reach| {

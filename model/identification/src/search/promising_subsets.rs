@@ -20,9 +20,10 @@ pub(crate) const LOCAL_MINIMA: usize = 2;
 
 /// Most starts of a set with an effect.
 pub(crate) fn most_starts(effect: &dyn Effect) -> usize {
-    match effect.size_response().is_rough() {
-        true => LOCAL_MINIMA,
-        false => 1,
+    if effect.size_response().is_rough() {
+        LOCAL_MINIMA
+    } else {
+        1
     }
 }
 

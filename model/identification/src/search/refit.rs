@@ -65,9 +65,10 @@ impl Refits<'_> {
             let synchronised = projection.synchronised(estimate, &left);
             let resimulated = square_sum(&residuals(&synchronised)) + synchronised.prior_cost();
             let penalty = self.penalty.of_all(estimate);
-            match resimulated < predicted {
-                true => (resimulated + penalty, synchronised),
-                false => (predicted + penalty, estimate.clone()),
+            if resimulated < predicted {
+                (resimulated + penalty, synchronised)
+            } else {
+                (predicted + penalty, estimate.clone())
             }
         };
         let starts = starts.into_par_iter().filter(|_| !self.options.is_over());

@@ -175,9 +175,10 @@ impl Screen<'_> {
         {
             // Condensed runs do not show when a spool jumps; runs with coarse time steps do show the ringing of a
             // pressure.
-            let runs = match experiment.ringing {
-                true => self.problem,
-                false => *problem,
+            let runs = if experiment.ringing {
+                self.problem
+            } else {
+                *problem
             };
             let look = || scan(runs, present, &hint, grid);
             let found = self.scans.of(hint.effect, present.cost, look);

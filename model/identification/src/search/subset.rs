@@ -273,9 +273,10 @@ impl<'a> Search<'a> {
             let center = evaluate_weighted(self.problem, without, weights);
             let coarse = Coarse::new(self.problem, &center);
             let builder = self.builder(&coarse, |effect| rivals.contains(&effect.id()));
-            let dictionary = match center.error() < CONFOUNDABLE_ERROR {
-                true => builder.thorough(builder.dictionary()),
-                false => builder.dictionary(),
+            let dictionary = if center.error() < CONFOUNDABLE_ERROR {
+                builder.thorough(builder.dictionary())
+            } else {
+                builder.dictionary()
             };
             self.fits_subsets(&coarse, &dictionary, 1);
         }

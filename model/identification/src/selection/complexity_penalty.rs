@@ -45,9 +45,10 @@ impl Penalty {
         variance: f64,
         residuals: &[Vec<f64>],
     ) -> Self {
-        let visible = match variance <= NOISE && experiment.runs.len() < 2 {
-            true => VISIBLE_UNREFUTED,
-            false => VISIBLE,
+        let visible = if variance <= NOISE && experiment.runs.len() < 2 {
+            VISIBLE_UNREFUTED
+        } else {
+            VISIBLE
         };
         let variance = variance.max(1.0);
         Self {

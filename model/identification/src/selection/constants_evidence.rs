@@ -125,9 +125,10 @@ impl<'a> Comparison<'a> {
         let penalty = Penalty::given(self.problem.experiment, self.free);
         let start = start.with_free_constants(self.problem.model, least_share(penalty));
         let inaccurate = refine(self.problem, start);
-        let better = match self.free.cost < inaccurate.cost {
-            true => self.free,
-            false => &inaccurate,
+        let better = if self.free.cost < inaccurate.cost {
+            self.free
+        } else {
+            &inaccurate
         };
         let penalty = Penalty::given(self.problem.experiment, better);
         let [declared, free] = inaccurate.compared(self.free);

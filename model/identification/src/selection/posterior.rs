@@ -53,9 +53,10 @@ impl EffectSet {
             None => (*id).to_owned(),
         });
         let names: Vec<String> = names.collect();
-        match names.is_empty() {
-            true => "the model".to_owned(),
-            false => names.join(" + "),
+        if names.is_empty() {
+            "the model".to_owned()
+        } else {
+            names.join(" + ")
         }
     }
 }

@@ -70,9 +70,10 @@ impl<'a, const KINDS: u8> Acting<'a, KINDS> {
 
     #[inline(always)]
     fn if_all_of(self, kinds: u8) -> &'a EffectHooks {
-        match KINDS & kinds == kinds {
-            true => self.hooks,
-            false => NO_EFFECTS,
+        if KINDS & kinds == kinds {
+            self.hooks
+        } else {
+            NO_EFFECTS
         }
     }
 }

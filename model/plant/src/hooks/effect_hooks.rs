@@ -209,9 +209,10 @@ const NONE: f64 = -0.0;
 /// Sum of laws. The empty sum is inlined: most plants have few effects, and this is in the innermost loop.
 #[inline(always)]
 fn sum(laws: &[Law], of: f64) -> f64 {
-    match laws.is_empty() {
-        true => NONE,
-        false => sum_of_some(laws, of),
+    if laws.is_empty() {
+        NONE
+    } else {
+        sum_of_some(laws, of)
     }
 }
 
@@ -224,9 +225,10 @@ fn sum_of_some(laws: &[Law], of: f64) -> f64 {
 /// Product of laws.
 #[inline(always)]
 fn product(laws: &[Law], of: f64) -> f64 {
-    match laws.is_empty() {
-        true => 1.0,
-        false => product_of_some(laws, of),
+    if laws.is_empty() {
+        1.0
+    } else {
+        product_of_some(laws, of)
     }
 }
 
@@ -267,9 +269,10 @@ impl EffectHooks {
     #[inline(always)]
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
-        match self.friction.is_empty() {
-            true => NONE,
-            false => self.some_friction_n(*state, weight_n),
+        if self.friction.is_empty() {
+            NONE
+        } else {
+            self.some_friction_n(*state, weight_n)
         }
     }
 
@@ -301,9 +304,10 @@ impl EffectHooks {
     #[inline(always)]
     #[must_use]
     pub fn weight_factor(&self, piston_m: f64, load_share: impl FnOnce() -> f64) -> f64 {
-        match self.weight_factor.is_empty() {
-            true => 1.0,
-            false => self.some_weight_factor(piston_m, load_share()),
+        if self.weight_factor.is_empty() {
+            1.0
+        } else {
+            self.some_weight_factor(piston_m, load_share())
         }
     }
 

@@ -163,9 +163,10 @@ impl Hose {
     #[inline(always)]
     #[must_use]
     pub fn creep_m3_s(&self, behind_pa: f64) -> f64 {
-        match self.creeping_m3_pa == 0.0 {
-            true => 0.0,
-            false => self.creeping_m3_pa * self.catching_up_1_s * behind_pa,
+        if self.creeping_m3_pa == 0.0 {
+            0.0
+        } else {
+            self.creeping_m3_pa * self.catching_up_1_s * behind_pa
         }
     }
 
@@ -174,9 +175,10 @@ impl Hose {
     #[inline(always)]
     #[must_use]
     pub fn behind_pa_s(&self, pressure_pa_s: f64, behind_pa: f64) -> f64 {
-        match self.catching_up_1_s == 0.0 {
-            true => 0.0,
-            false => pressure_pa_s - self.catching_up_1_s * behind_pa,
+        if self.catching_up_1_s == 0.0 {
+            0.0
+        } else {
+            pressure_pa_s - self.catching_up_1_s * behind_pa
         }
     }
 }

@@ -137,9 +137,10 @@ impl<'m> Plant<'m> {
                 let lands = steady::lands(&self.forces(&rig), self.state.piston_m);
                 let own_s = steady::longest_step_s(self.steps, &self.hooks, turning_a_s, lands);
                 // A spool that is driven fast does not stick.
-                match driven_a_s <= steady::JUMP_A_S {
-                    true => own_s.min(SPOOL_STEPS * self.hooks.largest_change_a / driven_a_s),
-                    false => own_s,
+                if driven_a_s <= steady::JUMP_A_S {
+                    own_s.min(SPOOL_STEPS * self.hooks.largest_change_a / driven_a_s)
+                } else {
+                    own_s
                 }
             }
             (Rig::Flow { .. }, _) => {

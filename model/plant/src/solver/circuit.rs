@@ -97,9 +97,10 @@ impl<'a, const KINDS: u8> Circuit<'a, KINDS> {
         let table_m3_s = curve.flow_m3_s(current_a);
         Opening {
             flow_m3_s: table_m3_s * factor.at(table_m3_s, curve.saturation_m3_s()),
-            beyond_threshold_a: match self.depends_on_travel() {
-                true => (current_a - curve.threshold_a()).max(0.0),
-                false => 0.0,
+            beyond_threshold_a: if self.depends_on_travel() {
+                (current_a - curve.threshold_a()).max(0.0)
+            } else {
+                0.0
             },
         }
     }
@@ -113,9 +114,10 @@ impl<'a, const KINDS: u8> Circuit<'a, KINDS> {
     /// The lowering valve's opening with the travel of its spool reduced by flow forces at a drop, Pa.
     #[inline(always)]
     fn travelled(&self, opening: Opening, drop_pa: f64) -> Opening {
-        match self.hooks.oil().lower_travel_factor.is_empty() {
-            true => opening,
-            false => self.travelled_less(opening, drop_pa),
+        if self.hooks.oil().lower_travel_factor.is_empty() {
+            opening
+        } else {
+            self.travelled_less(opening, drop_pa)
         }
     }
 
@@ -313,9 +315,10 @@ impl<'a, const KINDS: u8> Circuit<'a, KINDS> {
     #[must_use]
     pub fn compensator_pa_s(&self, openings: Openings, state: &MechanicalState) -> f64 {
         let lag_s = self.hooks.supply().compensator_lag_s;
-        match lag_s > 0.0 {
-            true => (self.steady_pressure_pa(openings.lift, state) - state.compensator_pa) / lag_s,
-            false => 0.0,
+        if lag_s > 0.0 {
+            (self.steady_pressure_pa(openings.lift, state) - state.compensator_pa) / lag_s
+        } else {
+            0.0
         }
     }
 
@@ -363,9 +366,10 @@ impl<'a, const KINDS: u8> Circuit<'a, KINDS> {
         cylinder_pressure_pa: f64,
         flow_at: impl Fn(f64) -> f64,
     ) -> f64 {
-        match self.hooks.supply().margin_lost_to_flow_pa_s_m3 == 0.0 {
-            true => wanted_pa,
-            false => self.drooped_with_flow_pa(wanted_pa, cylinder_pressure_pa, flow_at),
+        if self.hooks.supply().margin_lost_to_flow_pa_s_m3 == 0.0 {
+            wanted_pa
+        } else {
+            self.drooped_with_flow_pa(wanted_pa, cylinder_pressure_pa, flow_at)
         }
     }
 
@@ -454,9 +458,10 @@ impl<'a, const KINDS: u8> Circuit<'a, KINDS> {
         }
         let opening = self.lower_opening(opening, state);
         let free_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
-        match self.hooks.oil().return_line.is_free() && self.hooks.own().terms.is_empty() {
-            true => free_m3_s,
-            false => self.behind_return_line_m3_s(opening, free_m3_s, *state),
+        if self.hooks.oil().return_line.is_free() && self.hooks.own().terms.is_empty() {
+            free_m3_s
+        } else {
+            self.behind_return_line_m3_s(opening, free_m3_s, *state)
         }
     }
 

@@ -213,9 +213,10 @@ fn moved<const KINDS: u8>(
 ) -> MechanicalState {
     let piston_m = state.piston_m + dt_s * rate[0];
     let travel_m = piston_m - state.piston_m;
-    let compensator_pa = match hooks.supply().compensator_lag_s == 0.0 {
-        true => state.compensator_pa,
-        false => state.compensator_pa + dt_s * rate[4],
+    let compensator_pa = if hooks.supply().compensator_lag_s == 0.0 {
+        state.compensator_pa
+    } else {
+        state.compensator_pa + dt_s * rate[4]
     };
     MechanicalState {
         piston_m,
@@ -262,9 +263,10 @@ fn settling_rate<const KINDS: u8>(
     let lagging = circuit.hooks.supply().compensator_lag_s > 0.0;
     let keeps = flows.pump_pressure_pa + drooped_pa >= wanted_pa - TOLERANCE_PA;
     let compensated = keeps && !lagging;
-    let room_pa = match compensated {
-        true => (constants.relief_valve.set_pressure_pa - wanted_pa).max(0.0),
-        false => 0.0,
+    let room_pa = if compensated {
+        (constants.relief_valve.set_pressure_pa - wanted_pa).max(0.0)
+    } else {
+        0.0
     };
     let lift = if compensated && rise_pa <= room_pa {
         0.0
@@ -366,9 +368,10 @@ pub fn step<const KINDS: u8>(
     // A wider opening settles faster.
     let [first, _, last] = openings;
     let widest = if first.wider_than(last) { first } else { last };
-    let settling = match widest.shut() {
-        true => 0.0,
-        false => settling_rate(circuit, *widest, state, dt_s),
+    let settling = if widest.shut() {
+        0.0
+    } else {
+        settling_rate(circuit, *widest, state, dt_s)
     };
     let rate = creeping_rate(circuit, state)
         .max(lagging_rate(circuit))

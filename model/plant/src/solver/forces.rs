@@ -77,9 +77,10 @@ impl<'a, const KINDS: u8> Forces<'a, KINDS> {
     #[must_use]
     pub fn shaft_inertia_kg(&self, piston_m: f64) -> (f64, f64) {
         let inertia_kg_m2 = self.hooks.piston().shaft_inertia_kg_m2;
-        match inertia_kg_m2 == 0.0 {
-            true => (0.0, 0.0),
-            false => self.some_shaft_inertia_kg(inertia_kg_m2, piston_m),
+        if inertia_kg_m2 == 0.0 {
+            (0.0, 0.0)
+        } else {
+            self.some_shaft_inertia_kg(inertia_kg_m2, piston_m)
         }
     }
 

@@ -47,9 +47,10 @@ pub fn steep<T>(
         return outcome;
     }
     let (guess, opposite) = ((guess, at_guess), (opposite, at_opposite));
-    let (below, above) = match at_guess > 0.0 {
-        true => (opposite, guess),
-        false => (guess, opposite),
+    let (below, above) = if at_guess > 0.0 {
+        (opposite, guess)
+    } else {
+        (guess, opposite)
     };
     illinois(function, below, above, tolerance, tolerance)
 }

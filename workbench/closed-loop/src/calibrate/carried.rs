@@ -80,9 +80,10 @@ pub fn lines(model: &Model, base: &Calibration, calibration: &Calibration) -> Ve
             .iter()
             .filter_map(|path| change(path, base, calibration));
         let changes: Vec<String> = changes.collect();
-        let mut line = match changes.is_empty() {
-            true => format!("{name}: not carried"),
-            false => format!("{name} -> {}", changes.join(", ")),
+        let mut line = if changes.is_empty() {
+            format!("{name}: not carried")
+        } else {
+            format!("{name} -> {}", changes.join(", "))
         };
         if !destination.remains.is_empty() {
             let join = if changes.is_empty() {

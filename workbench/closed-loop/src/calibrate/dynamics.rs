@@ -53,9 +53,10 @@ pub fn adapt(model: &Model, calibration: &mut Calibration) {
     let shortest_s = lags_s[0].min(lags_s[1]);
     let kept = swing_s(usual_rad_s, usual_s) / swing_s(softest_rad_s, shortest_s);
     let creep_mm_s = 1e-3 * f64::from(position.creep_speed.0);
-    let by_lag_mm_s = match first_order {
-        true => (stop_band_mm / (LAG_ERROR * longest_s)).max(creep_mm_s),
-        false => creep_mm_s,
+    let by_lag_mm_s = if first_order {
+        (stop_band_mm / (LAG_ERROR * longest_s)).max(creep_mm_s)
+    } else {
+        creep_mm_s
     };
     let creep_mm_s = (creep_mm_s * kept).min(by_lag_mm_s);
     position.creep_speed = MicrometrePerSecond((1e3 * creep_mm_s).round() as i32);
@@ -73,9 +74,10 @@ pub fn adapt(model: &Model, calibration: &mut Calibration) {
     ] {
         let soft_m_s2 = softness * 1e-3 * f64::from(ramp.0);
         let felt_m_s2 = felt_deceleration_m_s2(soft_m_s2, speed_m_s, usual_s);
-        let behind_m_s2 = match first_order {
-            true => deceleration_behind_m_s2(felt_m_s2, speed_m_s, lag_s),
-            false => soft_m_s2,
+        let behind_m_s2 = if first_order {
+            deceleration_behind_m_s2(felt_m_s2, speed_m_s, lag_s)
+        } else {
+            soft_m_s2
         };
         *ramp = in_mm_s2(behind_m_s2.min(1e-3 * f64::from(steepest.0.max(ramp.0))));
     }
@@ -183,9 +185,10 @@ fn deceleration_behind_m_s2(felt_m_s2: f64, speed_m_s: f64, lag_s: f64) -> f64 {
     let (mut short_s, mut long_s) = (0.0, speed_m_s / felt_m_s2);
     for _ in 0..50 {
         let middle_s = 0.5 * (short_s + long_s);
-        match felt_deceleration_m_s2(speed_m_s / middle_s, speed_m_s, lag_s) > felt_m_s2 {
-            true => short_s = middle_s,
-            false => long_s = middle_s,
+        if felt_deceleration_m_s2(speed_m_s / middle_s, speed_m_s, lag_s) > felt_m_s2 {
+            short_s = middle_s
+        } else {
+            long_s = middle_s
         }
     }
     speed_m_s / long_s

@@ -73,9 +73,10 @@ impl Moves {
         let way = (figures.to_deg - figures.from_deg).signum();
         figures.overshoot_deg = figures.overshoot_deg.max(error_deg * way);
         figures.error_deg = (now_s - self.driven_s >= REST_S).then_some(error_deg);
-        figures.arrived_s = match error_deg.abs() <= ARRIVED_DEG {
-            true => figures.arrived_s.or(Some(now_s - self.changed_s)),
-            false => None,
+        figures.arrived_s = if error_deg.abs() <= ARRIVED_DEG {
+            figures.arrived_s.or(Some(now_s - self.changed_s))
+        } else {
+            None
         };
     }
 

@@ -116,9 +116,10 @@ fn unknown(calibration: &mut Calibration, group: &str, name: &str) -> String {
             names.push(info.name);
         }
     });
-    let offer = match names.is_empty() {
-        true => offer_names(group, &groups),
-        false => offer_names(name, &names),
+    let offer = if names.is_empty() {
+        offer_names(group, &groups)
+    } else {
+        offer_names(name, &names)
     };
     let what = quote(&format!("{group}.{name}"));
     format!("there is no {what}; {offer}")

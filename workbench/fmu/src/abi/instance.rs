@@ -98,12 +98,13 @@ impl Instance {
 
     /// Refuses a call that the standard does not allow now.
     pub fn only_in(&self, phases: &[Phase]) -> Result<(), Fault> {
-        match phases.contains(&self.now.phase) {
-            true => Ok(()),
-            false => Err(Fault::error(format!(
+        if phases.contains(&self.now.phase) {
+            Ok(())
+        } else {
+            Err(Fault::error(format!(
                 "it may not be called in the state {:?}; it may be in {phases:?}",
                 self.now.phase
-            ))),
+            )))
         }
     }
 

@@ -41,9 +41,10 @@ impl LinesFile {
             source,
         };
         let is_file = path.is_file();
-        let text = match is_file {
-            true => fs::read_to_string(path).map_err(fault)?,
-            false => String::new(),
+        let text = if is_file {
+            fs::read_to_string(path).map_err(fault)?
+        } else {
+            String::new()
         };
         if !resume && !text.is_empty() {
             return Err(Error::Usage(format!(

@@ -87,9 +87,10 @@ fn noise(campaign: &Campaign) -> String {
     let stated = currents.into_iter().chain(channels);
     let lines = stated.filter_map(|(key, sigma)| Some(format!("{key} = {:?}\n", sigma?)));
     let lines: String = lines.collect();
-    match lines.is_empty() {
-        true => lines,
-        false => format!("\n[noise]\n{lines}"),
+    if lines.is_empty() {
+        lines
+    } else {
+        format!("\n[noise]\n{lines}")
     }
 }
 

@@ -161,9 +161,10 @@ impl Ready {
         reporter.progress("fitting the clocks and loads", None, None);
         let options = Options {
             limit: reporter.limit(search.budget_s),
-            constants: match search.data_sheet {
-                true => Accuracy::DataSheet,
-                false => Accuracy::default(),
+            constants: if search.data_sheet {
+                Accuracy::DataSheet
+            } else {
+                Accuracy::default()
             },
             tolerances: Some(own),
             ..Options::default()

@@ -113,12 +113,11 @@ mod tests {
         let chunks = tokio_stream::iter(chunks);
         let within = Duration::from_millis(50);
         let outcome = runtime.block_on(async {
-            match waits {
-                true => {
-                    let chunks = chunks.chain(tokio_stream::pending());
-                    receive(&upload, "a.csv", chunks, within).await
-                }
-                false => receive(&upload, "a.csv", chunks, within).await,
+            if waits {
+                let chunks = chunks.chain(tokio_stream::pending());
+                receive(&upload, "a.csv", chunks, within).await
+            } else {
+                receive(&upload, "a.csv", chunks, within).await
             }
         });
         (folders, upload, outcome)

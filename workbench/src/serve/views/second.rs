@@ -16,9 +16,10 @@ pub fn compared(session: &Session, present: &Comparison) -> Value {
         return Value::Null;
     };
     let other = Comparison::of(&second.evaluated, &second.model);
-    let [before, after] = match second.is_after {
-        true => [present, &other],
-        false => [&other, present],
+    let [before, after] = if second.is_after {
+        [present, &other]
+    } else {
+        [&other, present]
     };
     let mut steps = session.steps().iter();
     json!({

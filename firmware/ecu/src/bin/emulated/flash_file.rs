@@ -37,9 +37,10 @@ impl FlashFile {
 
     fn read_at(&mut self, offset: usize, target: &mut [u8]) -> Result<(), HostFileError> {
         self.file.seek(self.start + offset)?;
-        match self.file.read(target) == target.len() {
-            true => Ok(()),
-            false => Err(HostFileError::Access),
+        if self.file.read(target) == target.len() {
+            Ok(())
+        } else {
+            Err(HostFileError::Access)
         }
     }
 

@@ -66,9 +66,10 @@ fn run() -> Result<Done, Failure> {
         return parts::run(&stopwatch).map(|()| Done::default());
     }
     let mut link = Link::open()?;
-    match command_line::is(b"ecu") {
-        true => application::run(&mut link, &stopwatch),
-        false => steps::run(&mut link, &stopwatch),
+    if command_line::is(b"ecu") {
+        application::run(&mut link, &stopwatch)
+    } else {
+        steps::run(&mut link, &stopwatch)
     }
 }
 

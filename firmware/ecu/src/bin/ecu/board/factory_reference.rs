@@ -16,11 +16,12 @@ pub fn scaling() -> BoardScaling {
     let factory = u32::from(unsafe { (FACTORY_REFERENCE as *const u16).read_volatile() });
     let code = factory * FACTORY_REFERENCE_MV / REFERENCE_MV;
     let typical = u32::from(SCALING.reference.get());
-    match code.abs_diff(typical) * 1_000 <= typical * TOLERANCE_PER_MILLE {
-        true => BoardScaling {
+    if code.abs_diff(typical) * 1_000 <= typical * TOLERANCE_PER_MILLE {
+        BoardScaling {
             reference: AdcCode::new(code as u16),
             ..SCALING
-        },
-        false => SCALING,
+        }
+    } else {
+        SCALING
     }
 }

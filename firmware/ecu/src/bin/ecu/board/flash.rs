@@ -54,9 +54,10 @@ impl DataFlash {
             return Err(FlashError(NorFlashErrorKind::NotAligned));
         }
         let room = self.bytes.checked_sub(offset);
-        match room.is_some_and(|room| length <= room) {
-            true => Ok(self.first_address.saturating_add(offset)),
-            false => Err(FlashError(NorFlashErrorKind::OutOfBounds)),
+        if room.is_some_and(|room| length <= room) {
+            Ok(self.first_address.saturating_add(offset))
+        } else {
+            Err(FlashError(NorFlashErrorKind::OutOfBounds))
         }
     }
 }
@@ -124,8 +125,9 @@ fn changed(work: impl FnOnce()) -> Result<(), FlashError> {
     FLASH.acr().modify(|w| w.set_dcrst(true));
     FLASH.acr().modify(|w| w.set_dcrst(false));
     FLASH.acr().modify(|w| w.set_dcen(true));
-    match good {
-        true => Ok(()),
-        false => Err(FlashError(NorFlashErrorKind::Other)),
+    if good {
+        Ok(())
+    } else {
+        Err(FlashError(NorFlashErrorKind::Other))
     }
 }

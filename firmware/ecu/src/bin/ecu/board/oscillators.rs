@@ -60,9 +60,10 @@ impl Oscillators {
             slow_clock::COUNTS[1] * PERIODS / 1_000 * part::INTERNAL_RANGE_PER_MILLE[1];
         let is_good = (READINGS_HZ[0]..=READINGS_HZ[1]).contains(&self.crystal_hz)
             && (LOW..=HIGH).contains(&self.slow_counts);
-        match is_good {
-            true => Source::Crystal,
-            false => Source::Internal,
+        if is_good {
+            Source::Crystal
+        } else {
+            Source::Internal
         }
     }
 }

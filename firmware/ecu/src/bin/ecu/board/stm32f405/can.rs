@@ -105,9 +105,10 @@ impl Can {
                     w.set_exid(id.as_raw() & 0x3_FFFF);
                 }
             }
-            w.set_rtr(match frame.is_remote() {
-                true => Rtr::REMOTE,
-                false => Rtr::DATA,
+            w.set_rtr(if frame.is_remote() {
+                Rtr::REMOTE
+            } else {
+                Rtr::DATA
             });
             w.set_txrq(true);
         });

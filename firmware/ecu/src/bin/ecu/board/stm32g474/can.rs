@@ -135,9 +135,10 @@ fn received() -> Option<Frame> {
 }
 
 fn frame(header: u32, length: u32, [low, high]: [u32; 2]) -> Option<Frame> {
-    let id = match header & EXTENDED != 0 {
-        true => Id::Extended(ExtendedId::new(header & ExtendedId::MAX.as_raw())?),
-        false => Id::Standard(StandardId::new((header >> 18 & 0x7FF) as u16)?),
+    let id = if header & EXTENDED != 0 {
+        Id::Extended(ExtendedId::new(header & ExtendedId::MAX.as_raw())?)
+    } else {
+        Id::Standard(StandardId::new((header >> 18 & 0x7FF) as u16)?)
     };
     let length = length.min(8) as usize;
     if header & REMOTE != 0 {
