@@ -29,7 +29,7 @@ pub struct LineError {
     /// Description.
     pub what: String,
     /// Suggested correction.
-    pub mend: String,
+    pub hint: String,
 }
 
 /// The header, and the time of the last line.
@@ -56,7 +56,7 @@ impl Columns {
                 return Err(LineError {
                     column,
                     what,
-                    mend: offer_names(cell, &KNOWN),
+                    hint: offer_names(cell, &KNOWN),
                 });
             };
             if order.contains(&index) {
@@ -64,7 +64,7 @@ impl Columns {
                 return Err(LineError {
                     column,
                     what,
-                    mend: "delete one of the two".to_owned(),
+                    hint: "delete one of the two".to_owned(),
                 });
             }
             order.push(index);
@@ -78,7 +78,7 @@ impl Columns {
                 Err(LineError {
                     column: 1,
                     what,
-                    mend: Self::MEND.to_owned(),
+                    hint: Self::MEND.to_owned(),
                 })
             }
             None => Ok(Self {
@@ -108,7 +108,7 @@ impl Columns {
                 return Err(LineError {
                     column,
                     what,
-                    mend: "give one cell for each column of the header".to_owned(),
+                    hint: "give one cell for each column of the header".to_owned(),
                 });
             };
             if index == 0 {
@@ -118,11 +118,11 @@ impl Columns {
         }
         if let Some(&index) = order.next() {
             let what = format!("the line has no cell for {}", KNOWN[index]);
-            let mend = "give one cell for each column of the header; it may be empty".to_owned();
+            let hint = "give one cell for each column of the header; it may be empty".to_owned();
             return Err(LineError {
                 column: line.trim_end().chars().count() + 1,
                 what,
-                mend,
+                hint,
             });
         }
         self.check_time(time_column, values[0])?;
@@ -130,19 +130,19 @@ impl Columns {
     }
 
     fn check_time(&mut self, column: usize, time_s: Option<f64>) -> Result<(), LineError> {
-        let mend = "give one line for each millisecond".to_owned();
+        let hint = "give one line for each millisecond".to_owned();
         let Some(time_s) = time_s else {
             return Err(LineError {
                 column,
                 what: "time_s is empty".to_owned(),
-                mend,
+                hint,
             });
         };
         if let Some(last_s) = self.time_s.replace(time_s) {
             let step_s = time_s - last_s;
             if !STEP_S.contains(&step_s) {
                 let what = format!("time_s advances by {:.6} s instead of 0.001 s", step_s);
-                return Err(LineError { column, what, mend });
+                return Err(LineError { column, what, hint });
             }
         }
         Ok(())
@@ -181,7 +181,7 @@ fn number(column: usize, cell: &str) -> Result<Option<f64>, LineError> {
             Err(LineError {
                 column,
                 what,
-                mend: "write a number like 90.25, or leave the cell empty".to_owned(),
+                hint: "write a number like 90.25, or leave the cell empty".to_owned(),
             })
         }
     }

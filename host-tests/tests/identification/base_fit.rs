@@ -282,7 +282,7 @@ fn only_another_machine_is_an_unsuitable_base() {
     for &name in cases(&names[..2], &names) {
         let campaign = hitch_campaign::Campaign::load(folder(name).as_ref());
         let campaign = campaign.expect("a shipped campaign");
-        let hopeless = |model: &Model| {
+        let unsuitable = |model: &Model| {
             let experiment = Experiment::new(&campaign, model);
             let base = fit_base(Problem::new(&experiment, model));
             let channels = [0, 1, 2, 3].map(|channel| base.channel_error(channel));
@@ -294,8 +294,8 @@ fn only_another_machine_is_an_unsuitable_base() {
             );
             is_unsuitable(&experiment, &base, &base)
         };
-        assert!(!hopeless(&hitch_model_file::nominal()), "{name}");
-        let other = hopeless(&another_machine());
+        assert!(!unsuitable(&hitch_model_file::nominal()), "{name}");
+        let other = unsuitable(&another_machine());
         assert!(other, "{name}");
     }
 }
@@ -317,7 +317,7 @@ fn diagnose_first_reports_an_unsuitable_base() {
     let diagnosis = said("diagnose", &["--json".as_ref(), document.as_ref()]);
     assert!(diagnosis.starts_with("The base model does not match this machine"));
     let written = std::fs::read_to_string(&document).expect("a document");
-    assert!(written.contains("\"hopeless_base\": true"));
+    assert!(written.contains("\"unsuitable_base\": true"));
     for text in [diagnosis, said("compare", &[])] {
         let last = text.lines().last().expect("a proposal");
         assert!(last.starts_with("  hitch model fit "), "{last}");

@@ -87,8 +87,8 @@ pub fn read(
     }
     let rows = taken.iter().find(|(name, _)| *name == LIFT);
     let Some((_, rows)) = rows else {
-        let (what, mend) = unassigned("channel", &LIFTS);
-        return Err(file.source().error(what, mend));
+        let (what, hint) = unassigned("channel", &LIFTS);
+        return Err(file.source().error(what, hint));
     };
     let source = Arc::new(file.source().clone());
     let series = taken.iter().map(|(name, series)| (*name, 0, series));
@@ -154,12 +154,12 @@ fn find(file: &dyn ChannelFile, wanted: &Source) -> Result<Option<usize>, Campai
                 wanted.column.name
             );
             let [first, second] = [first, second].map(|index| quote(&channels[index].name));
-            let mend = if first == second {
+            let hint = if first == second {
                 "give them different names, and save the file again".to_owned()
             } else {
                 format!("assign {first} or {second}")
             };
-            Err(file.source().error(what, mend))
+            Err(file.source().error(what, hint))
         }
     }
 }
@@ -168,8 +168,8 @@ fn find(file: &dyn ChannelFile, wanted: &Source) -> Result<Option<usize>, Campai
 pub fn missing(file: &dyn ChannelFile, wanted: &Source) -> CampaignError {
     let channels = file.channels().iter();
     let names: Vec<&str> = channels.map(|channel| channel.name.as_str()).collect();
-    let (what, mend) = wanted.missing("channel", &names);
-    file.source().error(what, mend)
+    let (what, hint) = wanted.missing("channel", &names);
+    file.source().error(what, hint)
 }
 
 fn scaled_series(
@@ -180,7 +180,7 @@ fn scaled_series(
     linkage: &Linkage,
 ) -> Result<Series, CampaignError> {
     let channel = &file.channels()[index];
-    let fault = |(what, mend): (String, String)| file.source().error(what, mend);
+    let fault = |(what, hint): (String, String)| file.source().error(what, hint);
     if let Some(what) = channel.fault {
         let what = format!("channel {}: {what}", quote(&channel.name));
         return Err(fault((what, "export it as numbers".to_owned())));

@@ -119,11 +119,11 @@ impl Source {
         let key = self.column.name;
         let Some(unit) = self.unit.as_deref().or(logged) else {
             let what = format!("{} of {key} has no unit", quote(&self.name));
-            let mend = format!(
+            let hint = format!(
                 "write {key} = \"{}:{}\" under [columns], with its unit",
                 self.name, self.column.unit
             );
-            return Err((what, mend));
+            return Err((what, hint));
         };
         Scale::of(unit, self.column).map_err(|what| (what, how_to_scale(self.column)))
     }
@@ -228,7 +228,7 @@ impl ColumnSettings {
             } else {
                 let text = columns.required_text(key)?;
                 Source::parse(key, text)
-                    .map_err(|(what, mend)| columns.error_at(key, what, mend))?
+                    .map_err(|(what, hint)| columns.error_at(key, what, hint))?
             };
             settings.sources.push(source);
         }
@@ -261,7 +261,7 @@ fn source_of_table(
     };
     source
         .check()
-        .map_err(|(what, mend)| columns.error_at(key, what, mend))?;
+        .map_err(|(what, hint)| columns.error_at(key, what, hint))?;
     Ok(source)
 }
 
@@ -307,10 +307,10 @@ mod tests {
                 "do not define a line",
             ),
         ] {
-            let (what, mend) = Source::parse(key, text).unwrap_err();
+            let (what, hint) = Source::parse(key, text).unwrap_err();
             assert!(
-                format!("{what}; {mend}").contains(expected),
-                "{what}; {mend}"
+                format!("{what}; {hint}").contains(expected),
+                "{what}; {hint}"
             );
         }
         assert!(

@@ -36,8 +36,8 @@ impl Cut {
         let to_s = run.number(to, TIME_S)?.unwrap_or(Self::NONE.to_s);
         if from_s >= to_s {
             let what = format!("the run ends at {to_s} s, before its start at {from_s} s");
-            let mend = "both are seconds after the log's first sample";
-            return Err(run.error_at(to, what, mend));
+            let hint = "both are seconds after the log's first sample";
+            return Err(run.error_at(to, what, hint));
         }
         Ok(Self { from_s, to_s })
     }

@@ -20,11 +20,11 @@ pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, 
     } else {
         format!("the folder contains no file {}", quote(file))
     };
-    let mend = match key {
+    let hint = match key {
         "file" => "correct the name, or delete this [[run]] block",
         _ => "correct the name, or delete the line",
     };
-    Err(table.error_at(key, what, mend))
+    Err(table.error_at(key, what, hint))
 }
 
 /// A file's name: a path relative to the campaign's folder, or absolute.
@@ -34,6 +34,6 @@ pub fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, Cam
         return Ok(file);
     }
     let what = format!("{} is not the name of a file", quote(file));
-    let mend = "give a path relative to the campaign's folder, or an absolute path";
-    Err(table.error_at(key, what, mend))
+    let hint = "give a path relative to the campaign's folder, or an absolute path";
+    Err(table.error_at(key, what, hint))
 }

@@ -114,23 +114,23 @@ fn synchronous(top: &TomlTable) -> Result<bool, CampaignError> {
         Some("synchronous") => Ok(true),
         Some(other) => {
             let what = format!("clocks {} are not known", quote(other));
-            let mend = "use \"synchronous\" or \"independent\"";
-            Err(top.error_at("clocks", what, mend))
+            let hint = "use \"synchronous\" or \"independent\"";
+            Err(top.error_at("clocks", what, hint))
         }
     }
 }
 
 fn manifest_path(dir: &Path) -> Result<PathBuf, CampaignError> {
-    let mend = "a campaign is a folder with campaign.toml and a log per run";
+    let hint = "a campaign is a folder with campaign.toml and a log per run";
     if !dir.exists() {
-        return Err(InputError::of_file(dir, "no such folder", mend));
+        return Err(InputError::of_file(dir, "no such folder", hint));
     }
     if !dir.is_dir() {
-        return Err(InputError::of_file(dir, "is not a folder", mend));
+        return Err(InputError::of_file(dir, "is not a folder", hint));
     }
     let path = dir.join("campaign.toml");
     if !path.exists() {
-        return Err(InputError::of_file(dir, "contains no campaign.toml", mend));
+        return Err(InputError::of_file(dir, "contains no campaign.toml", hint));
     }
     Ok(path)
 }
@@ -176,8 +176,8 @@ fn runs(
 ) -> Result<Vec<(Run, LogNotes)>, CampaignError> {
     let tables = top.tables("run")?;
     if tables.is_empty() {
-        let mend = "add a [[run]] block for every log";
-        return Err(top.error_at("run", "the campaign has no runs", mend));
+        let hint = "add a [[run]] block for every log";
+        return Err(top.error_at("run", "the campaign has no runs", hint));
     }
     let mut runs = Vec::with_capacity(tables.len());
     let mut parts: Vec<(&str, Cut)> = Vec::with_capacity(tables.len());
@@ -190,8 +190,8 @@ fn runs(
         let mut others = parts.iter();
         if others.any(|(other, part)| *other == file && part.overlaps(cut)) {
             let what = format!("{} is listed twice", quote(file));
-            let mend = "delete one of the two [[run]] blocks, or give them times (from_s, to_s) that don't overlap";
-            return Err(table.error_at("file", what, mend));
+            let hint = "delete one of the two [[run]] blocks, or give them times (from_s, to_s) that don't overlap";
+            return Err(table.error_at("file", what, hint));
         }
         parts.push((file, cut));
         let (bench, oil_temperature_c) = conditions(table)?;
@@ -317,6 +317,6 @@ fn belongs_elsewhere(table: &TomlTable<'_>, key: &str, bench: &str) -> Result<()
         return Ok(());
     }
     let what = format!("{key} is valid only for a run on the {bench} bench");
-    let mend = format!("delete the line, or write bench = \"{bench}\"");
-    Err(table.error_at(key, what, mend))
+    let hint = format!("delete the line, or write bench = \"{bench}\"");
+    Err(table.error_at(key, what, hint))
 }

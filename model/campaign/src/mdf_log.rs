@@ -132,8 +132,8 @@ impl ChannelFile for MdfFile {
         };
         if times_s.len() != values.len() {
             let what = format!("channel {} has no time stamps", quote(name));
-            let mend = "export it together with the time channel of its group";
-            return Err(self.source.error(what, mend));
+            let hint = "export it together with the time channel of its group";
+            return Err(self.source.error(what, hint));
         }
         let bytes = vec![0; values.len()];
         Ok(Series {
@@ -313,6 +313,6 @@ fn unreadable(source: &SourceFile, channel: &str, error: &falcon_mdf::Mf4Error) 
         "" => String::new(),
         name => format!("channel {} of it: ", quote(name)),
     };
-    let mend = "export it again, as MDF 4.1 without encryption, or as CSV";
-    source.error(format!("cannot be read as MDF: {which}{error}"), mend)
+    let hint = "export it again, as MDF 4.1 without encryption, or as CSV";
+    source.error(format!("cannot be read as MDF: {which}{error}"), hint)
 }

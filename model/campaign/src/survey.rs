@@ -57,8 +57,8 @@ pub fn bus_signals(path: &Path, dbc: &Path) -> Result<Signals, CampaignError> {
     match Format::of(path) {
         Some(format) => bus_log::signals(&format.source(path)?, format, &description),
         None => {
-            let mend = "it is .log, .asc, .blf, or frames in MDF or CSV";
-            Err(InputError::of_file(path, "is not a log of a bus", mend))
+            let hint = "it is .log, .asc, .blf, or frames in MDF or CSV";
+            Err(InputError::of_file(path, "is not a log of a bus", hint))
         }
     }
 }
@@ -101,7 +101,7 @@ pub fn usual_units(name: &str) -> impl Iterator<Item = &'static str> {
 /// The fault, and a suggested correction, in a line.
 pub fn check_source(name: &str, text: &str) -> Result<(String, Option<String>), String> {
     let source =
-        columns::Source::parse(name, text).map_err(|(what, mend)| format!("{what}; {mend}"))?;
+        columns::Source::parse(name, text).map_err(|(what, hint)| format!("{what}; {hint}"))?;
     Ok((source.name, source.unit))
 }
 

@@ -97,8 +97,8 @@ impl Table {
             0 => Err(source.error("contains no samples", "log the run again")),
             n if n < Run::FEWEST_SAMPLES => {
                 let what = format!("contains only {n} samples");
-                let mend = format!("a run needs at least {}", Run::FEWEST_SAMPLES);
-                Err(source.error(what, mend))
+                let hint = format!("a run needs at least {}", Run::FEWEST_SAMPLES);
+                Err(source.error(what, hint))
             }
             _ => Ok(Self {
                 sources: vec![(0, source)],
@@ -181,8 +181,8 @@ impl Table {
     pub fn joined(mut self, next: &Self) -> Result<Self, CampaignError> {
         if !self.is_continued_by(next) {
             let what = format!("does not continue {}", self.sources[0].1.path.display());
-            let mend = "joined files have the same columns, and times that continue: give it a [[run]] block of its own";
-            return Err(next.sources[0].1.error(what, mend));
+            let hint = "joined files have the same columns, and times that continue: give it a [[run]] block of its own";
+            return Err(next.sources[0].1.error(what, hint));
         }
         let later_s = next.origin_s - self.origin_s;
         let rows = self.rows.len();
@@ -224,11 +224,11 @@ impl Table {
         let kept = stays.iter().filter(|stays| **stays).count();
         if kept < Run::FEWEST_SAMPLES {
             let what = format!("contains only {kept} samples within the run");
-            let mend = format!(
+            let hint = format!(
                 "a run needs at least {}; from_s and to_s are seconds after the first sample",
                 Run::FEWEST_SAMPLES
             );
-            return Err(self.source(0).error(what, mend));
+            return Err(self.source(0).error(what, hint));
         }
         let before = stays.iter().take_while(|stays| !**stays).count();
         let sources = self.sources.iter();
@@ -267,10 +267,10 @@ impl Table {
     pub fn required(&self, name: &str) -> Result<&[f64], CampaignError> {
         self.column(name).ok_or_else(|| {
             let what = format!("column {name} is missing");
-            let mend = format!("log it: every run needs {TIME}, {LIFT} and {LOWER}");
+            let hint = format!("log it: every run needs {TIME}, {LIFT} and {LOWER}");
             match self.cells {
-                Cells::Nowhere => self.source(0).error(what, mend),
-                _ => self.source(0).error_at(0, what, mend),
+                Cells::Nowhere => self.source(0).error(what, hint),
+                _ => self.source(0).error_at(0, what, hint),
             }
         })
     }
@@ -296,8 +296,8 @@ impl Table {
                 } else {
                     format!("{name} has no values")
                 };
-                let mend = "the currents are inputs of the model: log the run again, or cut it before the gap";
-                Err(self.error_in(gap.sample, name, what, mend))
+                let hint = "the currents are inputs of the model: log the run again, or cut it before the gap";
+                Err(self.error_in(gap.sample, name, what, hint))
             }
         }
     }
@@ -313,12 +313,12 @@ impl Table {
         };
         let (what, from_s, to_s) = self.step(before + 1, time_s);
         let what = format!("time {what}: {to_s} s after {from_s} s");
-        let mend = if rises(time_s) {
+        let hint = if rises(time_s) {
             format!("{TIME} has to rise from row to row, in steps of at most {LONGEST_STEP_S} s")
         } else {
             "export the times with more digits".to_owned()
         };
-        Err(self.error_in(before + 1, TIME, what, mend))
+        Err(self.error_in(before + 1, TIME, what, hint))
     }
 
     /// What a reader of the log should know.
@@ -373,15 +373,15 @@ impl Table {
         row: usize,
         name: &str,
         what: String,
-        mend: impl Into<String>,
+        hint: impl Into<String>,
     ) -> InputError {
         let samples = self.columns.iter().find(|samples| samples.name == name);
         let cell = samples.map_or(0, |samples| samples.cell);
         let byte = self.rows.get(row).copied().unwrap_or(0);
         match self.cells {
-            Cells::Between(mark) => cell_error(self.source(row), byte, (cell, mark), what, mend),
-            Cells::OneALine => self.source(row).error_at(byte, what, mend),
-            Cells::Nowhere => self.source(row).error(what, mend),
+            Cells::Between(mark) => cell_error(self.source(row), byte, (cell, mark), what, hint),
+            Cells::OneALine => self.source(row).error_at(byte, what, hint),
+            Cells::Nowhere => self.source(row).error(what, hint),
         }
     }
 }
@@ -440,13 +440,13 @@ pub fn cell_error(
     row_byte: usize,
     (index, mark): (usize, char),
     what: String,
-    mend: impl Into<String>,
+    hint: impl Into<String>,
 ) -> InputError {
     let Position { line, column } = source.place(row_byte);
     let row = source.text.get(row_byte..).unwrap_or_default();
     let before = cells_before(row, index, mark);
     let column = column + before;
-    InputError::at(&source.path, Position { line, column }, what, mend)
+    InputError::at(&source.path, Position { line, column }, what, hint)
 }
 
 /// Number of characters of a row before its cell `index`.

@@ -425,11 +425,11 @@ fn a_definition_that_cannot_be_fitted_is_refused_where_it_stands() {
             |d| d.parameters[1].low = 0.0,
         ),
     ];
-    for (what, mend, change) in cases {
+    for (what, hint, change) in cases {
         let found = definition_fault(change);
         let where_and_what = format!("m.toml:{what}");
         assert!(
-            found.starts_with(&where_and_what) && found.contains(mend),
+            found.starts_with(&where_and_what) && found.contains(hint),
             "expected {what}\n     got {found}"
         );
         assert_eq!(found.lines().count(), 1, "{found}");

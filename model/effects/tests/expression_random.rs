@@ -149,7 +149,7 @@ fn never_panics(text: &str) {
             "{fault}"
         );
         assert!(
-            fault.column >= 1 && !fault.what.is_empty() && !fault.mend.is_empty(),
+            fault.column >= 1 && !fault.what.is_empty() && !fault.hint.is_empty(),
             "{fault}"
         );
     }

@@ -12,31 +12,31 @@ pub struct Fault {
     /// Description.
     pub what: String,
     /// Suggested correction.
-    pub mend: String,
+    pub hint: String,
 }
 
 impl Fault {
     /// A fault at a byte of `text`.
-    pub fn at(text: &str, byte: usize, what: impl Into<String>, mend: impl Into<String>) -> Self {
+    pub fn at(text: &str, byte: usize, what: impl Into<String>, hint: impl Into<String>) -> Self {
         let before = text.char_indices().take_while(|(at, _)| *at < byte);
         Self {
             byte,
             column: before.count() + 1,
             what: what.into(),
-            mend: mend.into(),
+            hint: hint.into(),
         }
     }
 
     /// The same fault in a text that contains this one from `byte` on.
     #[must_use]
     pub fn inside(self, text: &str, byte: usize) -> Self {
-        Self::at(text, byte + self.byte, self.what, self.mend)
+        Self::at(text, byte + self.byte, self.what, self.hint)
     }
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "column {}: {}; {}", self.column, self.what, self.mend)
+        write!(f, "column {}: {}; {}", self.column, self.what, self.hint)
     }
 }
 

@@ -7,7 +7,7 @@ const LOOKED_AT: usize = 4096;
 struct Kind {
     magic: &'static [u8],
     name: &'static str,
-    mend: &'static str,
+    hint: &'static str,
 }
 
 const AS_CSV: &str = "export its channels as CSV or as MDF 4 (.mf4) with the tool that wrote it";
@@ -19,8 +19,8 @@ const AS_PARQUET: &str = "give its name the extension .parquet";
 const UNPACK: &str = "unpack it first";
 const AS_MDF: &str = "give its name the extension .mf4";
 
-const fn kind(magic: &'static [u8], name: &'static str, mend: &'static str) -> Kind {
-    Kind { magic, name, mend }
+const fn kind(magic: &'static [u8], name: &'static str, hint: &'static str) -> Kind {
+    Kind { magic, name, hint }
 }
 
 static KINDS: [Kind; 15] = [
@@ -60,7 +60,7 @@ pub fn of_binary(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
 /// The same for formats with a magic number.
 pub fn of_magic(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let known = KINDS.iter().find(|kind| bytes.starts_with(kind.magic));
-    known.map(|kind| (kind.name, kind.mend))
+    known.map(|kind| (kind.name, kind.hint))
 }
 
 /// Whether a file that begins with `bytes` is a binary log of a CAN bus (BLF).

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// A fault in an input file: what, where, and a suggested correction.
 ///
-/// It prints as one line, `file:line:column: what; how to mend it`, regardless of the file's contents.
+/// It prints as one line, `file:line:column: what; how to correct it`, regardless of the file's contents.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputError {
     /// The faulty file or folder.
@@ -15,7 +15,7 @@ pub struct InputError {
     /// Description.
     pub what: String,
     /// Suggested correction; empty if `what` implies it.
-    pub mend: String,
+    pub hint: String,
 }
 
 /// A position in a text file as in editors: from 1, columns in characters.
@@ -29,12 +29,12 @@ pub struct Position {
 
 impl InputError {
     /// A fault of the whole file.
-    pub fn of_file(file: &Path, what: impl Into<String>, mend: impl Into<String>) -> Self {
+    pub fn of_file(file: &Path, what: impl Into<String>, hint: impl Into<String>) -> Self {
         Self {
             file: file.to_path_buf(),
             place: None,
             what: what.into(),
-            mend: mend.into(),
+            hint: hint.into(),
         }
     }
 
@@ -43,11 +43,11 @@ impl InputError {
         file: &Path,
         place: Position,
         what: impl Into<String>,
-        mend: impl Into<String>,
+        hint: impl Into<String>,
     ) -> Self {
         Self {
             place: Some(place),
-            ..Self::of_file(file, what, mend)
+            ..Self::of_file(file, what, hint)
         }
     }
 }
@@ -59,8 +59,8 @@ impl fmt::Display for InputError {
             write!(f, ":{line}:{column}")?;
         }
         write!(f, ": {}", one_line(&self.what))?;
-        if !self.mend.is_empty() {
-            write!(f, "; {}", one_line(&self.mend))?;
+        if !self.hint.is_empty() {
+            write!(f, "; {}", one_line(&self.hint))?;
         }
         Ok(())
     }
@@ -102,11 +102,11 @@ mod tests {
             Path::new("a\nb.csv"),
             place,
             "bad\r\nthing",
-            "mend\u{1b}[2J it",
+            "hint\u{1b}[2J it",
         );
         assert_eq!(
             error.to_string(),
-            r"a\nb.csv:3:7: bad\r\nthing; mend\u{1b}[2J it"
+            r"a\nb.csv:3:7: bad\r\nthing; hint\u{1b}[2J it"
         );
     }
 

@@ -46,7 +46,7 @@ impl SourceFile {
                 text: text.to_owned(),
             }),
             Err(error) => match file_kind::of_binary(bytes) {
-                Some((what, mend)) => Err(is_binary(path, what, mend)),
+                Some((what, hint)) => Err(is_binary(path, what, hint)),
                 None => Err(not_utf8(path, &bytes[..error.valid_up_to()])),
             },
         }
@@ -64,7 +64,7 @@ impl SourceFile {
             (!is_utf16(&bytes)).then(no_text).flatten()
         });
         match binary {
-            Some((what, mend)) => Err(is_binary(path, what, mend)),
+            Some((what, hint)) => Err(is_binary(path, what, hint)),
             None => Ok(Self {
                 path: path.to_path_buf(),
                 text: decoded(&bytes),
@@ -98,17 +98,17 @@ impl SourceFile {
         &self,
         byte: usize,
         what: impl Into<String>,
-        mend: impl Into<String>,
+        hint: impl Into<String>,
     ) -> InputError {
         if self.text.is_empty() {
-            return self.error(what, mend);
+            return self.error(what, hint);
         }
-        InputError::at(&self.path, self.place(byte), what, mend)
+        InputError::at(&self.path, self.place(byte), what, hint)
     }
 
     /// A fault of the whole file.
-    pub fn error(&self, what: impl Into<String>, mend: impl Into<String>) -> InputError {
-        InputError::of_file(&self.path, what, mend)
+    pub fn error(&self, what: impl Into<String>, hint: impl Into<String>) -> InputError {
+        InputError::of_file(&self.path, what, hint)
     }
 }
 
@@ -117,12 +117,12 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, InputError> {
     let unreadable = |error: std::io::Error| unreadable(path, &error);
     let about = fs::metadata(path).map_err(unreadable)?;
     if !about.is_file() {
-        let mend = "give the name of a text file";
-        return Err(InputError::of_file(path, "is not a file", mend));
+        let hint = "give the name of a text file";
+        return Err(InputError::of_file(path, "is not a file", hint));
     }
     if about.len() > LONGEST_FILE_BYTES {
-        let mend = "split the log into several runs";
-        return Err(InputError::of_file(path, "is longer than 512 MiB", mend));
+        let hint = "split the log into several runs";
+        return Err(InputError::of_file(path, "is longer than 512 MiB", hint));
     }
     fs::read(path).map_err(unreadable)
 }
@@ -143,8 +143,8 @@ fn decoded(bytes: &[u8]) -> String {
     encoding.decode(bytes).0.into_owned()
 }
 
-fn is_binary(path: &Path, what: &str, mend: &str) -> InputError {
-    InputError::of_file(path, format!("is {what}, not text"), mend)
+fn is_binary(path: &Path, what: &str, hint: &str) -> InputError {
+    InputError::of_file(path, format!("is {what}, not text"), hint)
 }
 
 /// Counts lines at LF, CR LF and lone CR, like the CSV reader.

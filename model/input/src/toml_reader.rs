@@ -39,8 +39,8 @@ impl<'a> TomlTable<'a> {
     }
 
     /// A fault of this table.
-    pub fn error(&self, what: impl Into<String>, mend: impl Into<String>) -> InputError {
-        self.source.error_at(self.span.start, what, mend)
+    pub fn error(&self, what: impl Into<String>, hint: impl Into<String>) -> InputError {
+        self.source.error_at(self.span.start, what, hint)
     }
 
     /// A fault of the value of `key`, or of the table without such a key.
@@ -48,13 +48,13 @@ impl<'a> TomlTable<'a> {
         &self,
         key: &str,
         what: impl Into<String>,
-        mend: impl Into<String>,
+        hint: impl Into<String>,
     ) -> InputError {
         let byte = self
             .entries
             .get(key)
             .map_or(self.span.start, |value| value.span().start);
-        self.source.error_at(byte, what, mend)
+        self.source.error_at(byte, what, hint)
     }
 
     /// A fault at a byte of the text of `key`; at its beginning if the text contains escapes.
@@ -63,7 +63,7 @@ impl<'a> TomlTable<'a> {
         key: &str,
         byte: usize,
         what: impl Into<String>,
-        mend: impl Into<String>,
+        hint: impl Into<String>,
     ) -> InputError {
         let inside = || {
             let value = self.entries.get(key)?;
@@ -75,8 +75,8 @@ impl<'a> TomlTable<'a> {
             Some(value.span().start + written.find(text.as_ref())?.max(1) + byte)
         };
         match inside() {
-            Some(byte) => self.source.error_at(byte, what, mend),
-            None => self.error_at(key, what, mend),
+            Some(byte) => self.source.error_at(byte, what, hint),
+            None => self.error_at(key, what, hint),
         }
     }
 
@@ -145,8 +145,8 @@ impl<'a> TomlTable<'a> {
             return Ok(Some(number));
         }
         let what = format!("{key} = {number} is out of range");
-        let mend = format!("the range is {} to {}", range.start(), range.end());
-        Err(self.error_at(key, what, mend))
+        let hint = format!("the range is {} to {}", range.start(), range.end());
+        Err(self.error_at(key, what, hint))
     }
 
     /// A required number.
@@ -190,8 +190,8 @@ impl<'a> TomlTable<'a> {
                 .ok_or_else(|| {
                     let what =
                         format!("{key} contains a value that is not a number within its range");
-                    let mend = format!("the range is {} to {}", range.start(), range.end());
-                    self.source.error_at(item.span().start, what, mend)
+                    let hint = format!("the range is {} to {}", range.start(), range.end());
+                    self.source.error_at(item.span().start, what, hint)
                 })
         };
         items.iter().map(number).collect::<Result<_, _>>().map(Some)
@@ -270,13 +270,13 @@ impl<'a> TomlTable<'a> {
             return Ok(Vec::new());
         };
         let name = format!("[[{}]]", self.path(key));
-        let mend = format!("write a line {name} and its keys below it");
+        let hint = format!("write a line {name} and its keys below it");
         let DeValue::Array(items) = value.get_ref() else {
             let what = format!(
                 "{key} has to be a list of tables, not {}",
                 kind(value.get_ref())
             );
-            return Err(self.error_at(key, what, mend));
+            return Err(self.error_at(key, what, hint));
         };
         let table = |item: &Spanned<DeValue<'a>>| match item.get_ref() {
             DeValue::Table(entries) => Ok(self.inner(name.clone(), item.span(), entries)),
@@ -285,7 +285,7 @@ impl<'a> TomlTable<'a> {
                     "{key} has to be a list of tables, but contains {}",
                     kind(other)
                 );
-                Err(self.source.error_at(item.span().start, what, mend.clone()))
+                Err(self.source.error_at(item.span().start, what, hint.clone()))
             }
         };
         items.iter().map(table).collect()
@@ -407,7 +407,7 @@ mod tests {
 
     #[test]
     fn mends_are_what_somebody_would_do() {
-        let mend = |text: &str| {
+        let hint = |text: &str| {
             fault(text, |table| {
                 table.number("a", f64::MIN..=f64::MAX).map(drop)
             })
@@ -419,7 +419,7 @@ mod tests {
             ("a = 1\rb = 2", "save it with Unix (LF)"),
             ("a = = 1", "write it as key = value"),
         ] {
-            let said = mend(text);
+            let said = hint(text);
             assert!(said.contains(expected) && said.len() < 200, "{said}");
         }
         for deep in [
@@ -427,9 +427,9 @@ mod tests {
             format!("[{}]", ["a"; 5_000].join(".")),
         ] {
             assert!(
-                mend(&deep).contains("remove brackets and dots"),
+                hint(&deep).contains("remove brackets and dots"),
                 "{}",
-                mend(&deep)
+                hint(&deep)
             );
         }
     }

@@ -122,11 +122,11 @@ fn has_values(constants: &mut Constants, table: &str) -> bool {
 }
 
 fn missing_table(top: &TomlTable<'_>, name: &str, variant: Variant) -> InputError {
-    let mend = format!(
+    let hint = format!(
         "add it, or a line base = \"nominal\" to use the nominal values for missing keys: {}",
         variant.keys(name).join(", ")
     );
-    top.error(format!("table [{name}] is missing"), mend)
+    top.error(format!("table [{name}] is missing"), hint)
 }
 
 fn read_constant(
@@ -229,15 +229,15 @@ fn effect_of(
 
 /// Position of the first key in the file among the constants that the error may be about.
 fn linkage_fault(top: &TomlTable<'_>, fault: &LinkageError) -> InputError {
-    let (what, mend) = (fault.to_string(), fault.mend());
+    let (what, hint) = (fault.to_string(), fault.hint());
     for (table, key) in fault.keys() {
         if let Ok(Some(table)) = top.table(table)
             && table.has(key)
         {
-            return table.error_at(key, format!("{key}: {what}"), mend);
+            return table.error_at(key, format!("{key}: {what}"), hint);
         }
     }
-    top.error(what, mend)
+    top.error(what, hint)
 }
 
 fn file_stem(source: &SourceFile) -> String {

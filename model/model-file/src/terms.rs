@@ -73,15 +73,15 @@ fn parameter(table: &TomlTable<'_>, size: bool) -> Result<ParameterDefinition, I
 
 /// A fault of a definition, with its position in the file.
 fn placed(table: &TomlTable<'_>, error: TermError) -> InputError {
-    let TermError { part, what, mend } = error;
+    let TermError { part, what, hint } = error;
     match part {
-        Part::Id => table.error_at("id", what, mend),
-        Part::Parameters => table.error(what, mend),
-        Part::Formula(byte) => table.error_inside("formula", byte, what, mend),
+        Part::Id => table.error_at("id", what, hint),
+        Part::Parameters => table.error(what, hint),
+        Part::Formula(byte) => table.error_inside("formula", byte, what, hint),
         Part::Parameter(index, key) => {
             match table.tables("parameter").unwrap_or_default().get(index) {
-                Some(parameter) => parameter.error_at(key, what, mend),
-                None => table.error(what, mend),
+                Some(parameter) => parameter.error_at(key, what, hint),
+                None => table.error(what, hint),
             }
         }
     }

@@ -40,8 +40,8 @@ fn read_kind(pump: &TomlTable<'_>, constants: &mut Constants) -> Result<(), Inpu
     };
     let Some((_, kind)) = KINDS.iter().find(|(name, _)| *name == written) else {
         let what = format!("kind {} is not known", quote(written));
-        let mend = "use \"fixed-displacement\" or \"load-sensing\"";
-        return Err(pump.error_at(KIND, what, mend));
+        let hint = "use \"fixed-displacement\" or \"load-sensing\"";
+        return Err(pump.error_at(KIND, what, hint));
     };
     if *kind == PumpKind::LoadSensing && constants.pump.kind != *kind {
         constants.pump.standby_pressure_pa = f64::NAN;
@@ -63,12 +63,12 @@ fn read_linkage(table: &TomlTable<'_>) -> Result<LinkageTable, InputError> {
     let angle_rad = column(1, RAD_PER_DEG)?;
     let height_m = column(2, M_PER_MM)?;
     LinkageTable::new(travel_m, angle_rad, height_m).map_err(|fault| {
-        let mend = match fault {
+        let hint = match fault {
             LinkageTableError::Length { .. } => "give a value of each for every measured point",
             LinkageTableError::Order { .. } => {
                 "sort the points by travel; angle and height rise with it"
             }
         };
-        table.error_at(LINKAGE_COLUMNS[0], fault.to_string(), mend)
+        table.error_at(LINKAGE_COLUMNS[0], fault.to_string(), hint)
     })
 }

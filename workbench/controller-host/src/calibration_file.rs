@@ -207,8 +207,8 @@ fn read_valve(file: &TomlTable<'_>, valve: &str, table: &mut ValveTable) -> Resu
             currents_a.len(),
             flows_lpm.len()
         );
-        let mend = format!("give as many flows as currents, 2 to {VALVE_POINTS} of them");
-        return Err(section.error_at("flow_lpm", what, mend));
+        let hint = format!("give as many flows as currents, 2 to {VALVE_POINTS} of them");
+        return Err(section.error_at("flow_lpm", what, hint));
     }
     if let Some(pair) = currents_a
         .windows(2)
@@ -285,8 +285,8 @@ fn read_linkage(file: &TomlTable<'_>, calibration: &mut Calibration) -> Result<(
 
 /// The firmware's objection to a calibration, at its position in the file.
 fn refused(file: &TomlTable<'_>, error: CalibrationError) -> InputError {
-    let (section, what, mend) = objection(error);
-    file.error_at(section, what, mend)
+    let (section, what, hint) = objection(error);
+    file.error_at(section, what, hint)
 }
 
 #[cfg(test)]

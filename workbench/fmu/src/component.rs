@@ -14,7 +14,7 @@ pub trait Component: Send {
     /// Begins anew with the values of parameters and inputs, and calculates the outputs in `values`.
     ///
     /// # Errors
-    /// If the values do not fit together; what is wrong and how to mend it.
+    /// If the values do not fit together; what is wrong and how to correct it.
     fn initialise(&mut self, values: &mut [Value]) -> Result<(), Refusal>;
 
     /// Advances by `dt_s`, which is positive and finite, and calculates the outputs in `values`.

@@ -7,7 +7,7 @@ use percent_encoding::percent_decode_str;
 /// The path of a file URI: `file:///tmp/unit/resources`, `file:/tmp/...`, `file://localhost/tmp/...`.
 ///
 /// # Errors
-/// If it is no file URI of this machine; what is wrong and how to mend it.
+/// If it is no file URI of this machine; what is wrong and how to correct it.
 pub fn path(uri: &str) -> Result<PathBuf, String> {
     const MEND: &str = "give a URI like file:///tmp/unit/resources";
     let scheme = uri

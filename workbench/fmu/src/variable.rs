@@ -88,7 +88,7 @@ impl Variable {
         self.causality != Causality::Parameter && matches!(self.start, Value::Real(_))
     }
 
-    /// Whether a real number may be set; otherwise what is wrong with it and how to mend it.
+    /// Whether a real number may be set; otherwise what is wrong with it and how to correct it.
     ///
     /// # Errors
     /// If the number is not finite or outside the range.

@@ -50,7 +50,7 @@ impl FromStr for Variant {
 /// Rejects variants with one name, and too many of them.
 ///
 /// # Errors
-/// What is wrong, and how to mend it.
+/// What is wrong, and how to correct it.
 pub fn check(variants: &[Variant]) -> Result<(), String> {
     if variants.len() > MOST_VARIANTS {
         return Err(format!(

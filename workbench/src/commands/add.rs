@@ -16,7 +16,7 @@ use hitch_plant::{Effect, Model, full_name};
 use crate::baseline_arg::BaselineArg;
 use crate::effect_arg::find;
 use crate::error::Error;
-use crate::explanation::{Base, HOPELESS_BASE, Posed, parameters, rebuilt};
+use crate::explanation::{Base, Posed, UNSUITABLE_BASE, parameters, rebuilt};
 use crate::model_arg::ModelArg;
 use crate::output;
 use crate::outputs::{Outputs, campaign_files};
@@ -69,7 +69,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let rebuilt = rebuilt(&model, &fit.estimate, output::stem(&args.out));
     output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
     let mut text = if is_unsuitable(&experiment, &base, &fit) {
-        format!("{}\n\n", wrapped(HOPELESS_BASE))
+        format!("{}\n\n", wrapped(UNSUITABLE_BASE))
     } else {
         String::new()
     };

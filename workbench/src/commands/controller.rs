@@ -86,7 +86,7 @@ pub fn serve(
             LineError {
                 column: 1,
                 what: "there is no header".to_owned(),
-                mend: Columns::MEND.to_owned(),
+                hint: Columns::MEND.to_owned(),
             },
         ));
     }
@@ -160,7 +160,7 @@ fn next_line(input: &mut impl BufRead, line: &mut String, number: usize) -> Resu
                 LineError {
                     column: 1,
                     what,
-                    mend: "send UTF-8 text".to_owned(),
+                    hint: "send UTF-8 text".to_owned(),
                 },
             )
         })?;
@@ -171,7 +171,7 @@ fn next_line(input: &mut impl BufRead, line: &mut String, number: usize) -> Resu
             LineError {
                 column: 1,
                 what,
-                mend: "end each line with a line feed".to_owned(),
+                hint: "end each line with a line feed".to_owned(),
             },
         ));
     }
@@ -183,5 +183,5 @@ fn fault(line: usize, error: LineError) -> Error {
         line,
         column: error.column,
     };
-    InputError::at(Path::new("standard input"), place, error.what, error.mend).into()
+    InputError::at(Path::new("standard input"), place, error.what, error.hint).into()
 }

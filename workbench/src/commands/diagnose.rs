@@ -60,11 +60,11 @@ pub fn run(args: &Args) -> Result<(), Error> {
     }
     outputs.tell(&args.json, &shown, || {
         let Head {
-            hopeless_base,
+            unsuitable_base,
             verdict,
             ..
         } = shown.head;
-        let standing = match (hopeless_base, verdict) {
+        let standing = match (unsuitable_base, verdict) {
             (true, _) => Standing::UnsuitableBase,
             (false, "nothing-missing") => Standing::Adequate,
             (false, _) => Standing::Inadequate,

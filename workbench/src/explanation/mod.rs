@@ -86,11 +86,11 @@ pub struct Head {
     /// Verdict: `nothing-missing`, `explained`, `ambiguous`, `unexplained` or `not-enough-data`.
     pub verdict: &'static str,
     /// Whether the base is unsuitable: the error is large everywhere, with and without effects.
-    pub hopeless_base: bool,
+    pub unsuitable_base: bool,
 }
 
 /// First message on an unsuitable base.
-pub const HOPELESS_BASE: &str = "The base model does not match this machine: the error is large everywhere. Fit the base first: \
+pub const UNSUITABLE_BASE: &str = "The base model does not match this machine: the error is large everywhere. Fit the base first: \
     hitch model fit CAMPAIGN --model MODEL --out FILE";
 
 /// One added effect.

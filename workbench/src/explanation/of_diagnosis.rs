@@ -44,7 +44,7 @@ impl Diagnosis {
                 noise_floor: 1.0,
                 channels: channels(experiment, model, &found.base, after),
                 verdict: verdict.name(),
-                hopeless_base: is_unsuitable(experiment, &found.base, after),
+                unsuitable_base: is_unsuitable(experiment, &found.base, after),
             },
             candidates,
             constants_off: found.constants_off,

@@ -29,7 +29,7 @@ impl Explanation {
                 noise_floor: 1.0,
                 channels: channels(experiment, model, &found.before, &found.after),
                 verdict: found.verdict.name(),
-                hopeless_base: is_unsuitable(experiment, &found.before, &found.after),
+                unsuitable_base: is_unsuitable(experiment, &found.before, &found.after),
             },
             error_refitted: found.refitted.as_ref().map(Fit::error),
             corrected_constants: found

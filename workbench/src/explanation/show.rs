@@ -6,8 +6,8 @@ use hitch_identification::explanation::explain::Verdict;
 use hitch_identification::selection::candidate::plausibility;
 
 use super::{
-    Alternative, ChannelFigures, Diagnosis, Explanation, HOPELESS_BASE, Head, Next, NotVisible,
-    Parameter, Step, Suggested, Unexplained,
+    Alternative, ChannelFigures, Diagnosis, Explanation, Head, Next, NotVisible, Parameter, Step,
+    Suggested, UNSUITABLE_BASE, Unexplained,
 };
 use crate::text::colour::{self, by_sigma};
 use crate::text::{Table, indented, known, wrapped};
@@ -218,8 +218,8 @@ impl fmt::Display for Diagnosis {
 
 impl fmt::Display for Head {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.hopeless_base {
-            writeln!(f, "{}\n", wrapped(HOPELESS_BASE))?;
+        if self.unsuitable_base {
+            writeln!(f, "{}\n", wrapped(UNSUITABLE_BASE))?;
         }
         let head = format!("Campaign {}, model {}", self.campaign, self.model);
         writeln!(f, "{}", wrapped(&head))?;

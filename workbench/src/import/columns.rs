@@ -3,7 +3,7 @@
 use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, is_absolute, run_columns};
 
 use super::doubts::{is_percentage, is_position, not_usable, says_degrees, two_points, why_not};
-use super::mapping::{BY_USER, Mapping, Taken, Untold};
+use super::mapping::{BY_USER, Mapping, Taken, Undetermined};
 use super::note::Note;
 use super::times::time;
 use super::words::{CHANNELS, Words};
@@ -51,10 +51,10 @@ impl Mapping {
         columns: &[LogColumn],
         kind: Kind,
         named: &[(String, String)],
-    ) -> Result<Self, Untold> {
+    ) -> Result<Self, Undetermined> {
         match Self::draft(columns, kind, named) {
             (mapping, None) => Ok(mapping),
-            (_, Some(untold)) => Err(untold),
+            (_, Some(undetermined)) => Err(undetermined),
         }
     }
 
@@ -64,9 +64,9 @@ impl Mapping {
         columns: &[LogColumn],
         kind: Kind,
         named: &[(String, String)],
-    ) -> (Self, Option<Untold>) {
+    ) -> (Self, Option<Undetermined>) {
         let mut mapping = Self::default();
-        let mut untold: Option<Untold> = None;
+        let mut undetermined: Option<Undetermined> = None;
         let mut used: Vec<String> = Vec::new();
         let mut left_out: Vec<&str> = Vec::new();
         for (channel, source) in named {
@@ -84,9 +84,9 @@ impl Mapping {
             match named {
                 Ok(name) => used.push(name),
                 Err(what) => {
-                    untold.get_or_insert(Untold {
+                    undetermined.get_or_insert(Undetermined {
                         what: format!("--map {channel}={source}: {what}"),
-                        mend: "write it as --map CHANNEL=\"NAME:UNIT\"".to_owned(),
+                        hint: "write it as --map CHANNEL=\"NAME:UNIT\"".to_owned(),
                     });
                 }
             }
@@ -107,7 +107,7 @@ impl Mapping {
                 }
                 Ok(None) => {}
                 Err(unclear) => {
-                    untold.get_or_insert(unclear);
+                    undetermined.get_or_insert(unclear);
                 }
             }
         }
@@ -115,10 +115,10 @@ impl Mapping {
             match time(columns, mapping.source_of(columns, "lift_current_a")) {
                 Ok(Some(taken)) => mapping.taken.push(taken),
                 Err(implausible) => {
-                    untold.get_or_insert(implausible);
+                    undetermined.get_or_insert(implausible);
                 }
                 Ok(None) => {
-                    untold.get_or_insert_with(|| no_times(columns));
+                    undetermined.get_or_insert_with(|| no_times(columns));
                 }
             }
         }
@@ -129,11 +129,11 @@ impl Mapping {
             Kind::Signals => Ok(()),
         };
         if let Err(implausible) = times {
-            untold.get_or_insert(implausible);
+            undetermined.get_or_insert(implausible);
         }
         let complete = mapping.check(columns);
         mapping.order();
-        (mapping, untold.or(complete.err()))
+        (mapping, undetermined.or(complete.err()))
     }
 
     /// The assignment that the user gives, and nothing else.
@@ -144,11 +144,11 @@ impl Mapping {
         columns: &[LogColumn],
         kind: Kind,
         named: &[(String, String)],
-    ) -> Result<Self, Untold> {
+    ) -> Result<Self, Undetermined> {
         let mut mapping = Self::default();
-        let wrong = |what: String| Untold {
+        let wrong = |what: String| Undetermined {
             what,
-            mend: "choose another column or unit, or enter two known points of the sensor"
+            hint: "choose another column or unit, or enter two known points of the sensor"
                 .to_owned(),
         };
         for (channel, source) in named {
@@ -233,7 +233,7 @@ impl Mapping {
                         column.name,
                         unit.unwrap_or("deg")
                     ),
-                    mend: Some(format!(
+                    hint: Some(format!(
                         "for percentages give {}",
                         two_points(ANGLE, &column.name, "%")
                     )),
@@ -258,7 +258,7 @@ impl Mapping {
         self.taken.iter().any(|taken| taken.channel == channel)
     }
 
-    fn check(&self, columns: &[LogColumn]) -> Result<(), Untold> {
+    fn check(&self, columns: &[LogColumn]) -> Result<(), Undetermined> {
         for channel in ["lift_current_a", "lower_current_a"] {
             if !self.has(channel) {
                 return Err(missing(channel, "it is an input of the model", columns));
@@ -278,11 +278,11 @@ impl Mapping {
     }
 }
 
-fn no_times(columns: &[LogColumn]) -> Untold {
+fn no_times(columns: &[LogColumn]) -> Undetermined {
     missing(TIMES, "times have to rise from row to row", columns)
 }
 
-fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
+fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Undetermined {
     const MOST: usize = 16;
     let words = CHANNELS.iter().find(|words| words.channel == channel);
     let unusable = columns.iter().find_map(|column| {
@@ -296,12 +296,12 @@ fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
         .map(|column| column.name.as_str())
         .collect();
     let more = if columns.len() > MOST { ", ..." } else { "" };
-    Untold {
+    Undetermined {
         what: match unusable {
             Some(unusable) => format!("{channel} is missing: {unusable}"),
             None => format!("no column was recognised as {channel}; {why}"),
         },
-        mend: format!(
+        hint: format!(
             "assign it with --map {channel}=\"NAME:UNIT\"; columns: {}{more}",
             names.join(", ")
         ),
@@ -325,7 +325,7 @@ fn proposal<'c>(
     kind: Kind,
     columns: impl Iterator<Item = &'c LogColumn>,
     largest_ma: f64,
-) -> Result<Proposal<'c>, Untold> {
+) -> Result<Proposal<'c>, Undetermined> {
     let mut candidates: Vec<Candidate<'c>> = columns
         .filter_map(|column| candidate(words, column))
         .collect();
@@ -335,14 +335,14 @@ fn proposal<'c>(
         [first, second, ..] if first.score == second.score => {
             let is_needed = words.channel.ends_with("current_a");
             return if is_needed {
-                Err(Untold {
+                Err(Undetermined {
                     what: format!(
                         "{} may be {} or {}",
                         words.channel,
                         described(first.column),
                         described(second.column)
                     ),
-                    mend: format!(
+                    hint: format!(
                         "assign it, as in --map {0}=\"{1}\" or --map {0}=\"{2}\"",
                         words.channel, first.column.name, second.column.name
                     ),
@@ -359,12 +359,12 @@ fn proposal<'c>(
         && !says_degrees(&column.name)
         && (is_position(&column.name) || is_percentage(&column.values));
     if is_implausible && kind != Kind::Signals {
-        return Err(Untold {
+        return Err(Undetermined {
             what: format!(
                 "\"{}\" has no unit: it may be an angle, a percentage or a travel",
                 column.name
             ),
-            mend: format!(
+            hint: format!(
                 "give it, as in --map {0}=\"{1}:deg\", in percent with two points {2}, or leave it out with --map {0}=",
                 words.channel,
                 column.name,

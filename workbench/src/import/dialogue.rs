@@ -5,7 +5,7 @@ use std::io::IsTerminal as _;
 
 use hitch_campaign::survey::{LogColumn, check_source};
 
-use super::{Columns, Mapping, Taken, Untold};
+use super::{Columns, Mapping, Taken, Undetermined};
 use crate::error::Error;
 use crate::output;
 use crate::text::{indented, wrapped};
@@ -34,9 +34,9 @@ pub fn agreed(
         let proposal = Mapping::propose(columns, *kind, &named);
         match &proposal {
             Ok(mapping) => output::print(&shown(found, mapping))?,
-            Err(Untold { what, .. }) if asks => output::print(&format!("{what}\n"))?,
-            Err(Untold { what, mend }) => {
-                return Err(Error::Usage(format!("{heading}: {what}; {mend}")));
+            Err(Undetermined { what, .. }) if asks => output::print(&format!("{what}\n"))?,
+            Err(Undetermined { what, hint }) => {
+                return Err(Error::Usage(format!("{heading}: {what}; {hint}")));
             }
         }
         if let (false, Ok(mapping)) = (asks, &proposal) {

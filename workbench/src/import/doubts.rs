@@ -39,7 +39,7 @@ pub fn why_not(channel: &str, column: &LogColumn) -> Option<Note> {
         }
         Some(unit @ ("%" | "V")) => Some(Note {
             what: format!("it is in {unit}"),
-            mend: Some(format!(
+            hint: Some(format!(
                 "give two points, as in {}",
                 two_points(channel, &column.name, unit)
             )),
@@ -49,7 +49,7 @@ pub fn why_not(channel: &str, column: &LogColumn) -> Option<Note> {
         }
         _ => Some(Note {
             what: format!("several columns may be {channel}"),
-            mend: Some(format!(
+            hint: Some(format!(
                 "assign one with --map {channel}=\"{}\"",
                 column.name
             )),

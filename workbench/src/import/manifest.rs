@@ -49,8 +49,8 @@ pub fn campaign(
         useful.extend((!found.is_useless).then_some(log));
     }
     if useful.is_empty() {
-        let mend = "import the file before it as well, or log the run again from a rest on";
-        return Err(Error::Usage(format!("{}; {mend}", notes.join("; "))));
+        let hint = "import the file before it as well, or log the run again from a rest on";
+        return Err(Error::Usage(format!("{}; {hint}", notes.join("; "))));
     }
     let logs = useful;
     let text = text(name, can, &logs);

@@ -32,11 +32,11 @@ pub struct Mapping {
 
 /// A column that could not be determined.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Untold {
+pub struct Undetermined {
     /// Description.
     pub what: String,
     /// Suggested correction.
-    pub mend: String,
+    pub hint: String,
 }
 
 /// Reason of a column that the user assigned.

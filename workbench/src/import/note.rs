@@ -8,21 +8,21 @@ pub struct Note {
     /// What was assumed, or the column with the reason why it is left out.
     pub what: String,
     /// What changes it on the command line; the page has its table for that.
-    pub mend: Option<String>,
+    pub hint: Option<String>,
 }
 
 impl Note {
     /// A line that needs no correction.
     #[must_use]
     pub fn plain(what: String) -> Self {
-        Self { what, mend: None }
+        Self { what, hint: None }
     }
 }
 
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.mend {
-            Some(mend) => write!(f, "{}; {mend}", self.what),
+        match &self.hint {
+            Some(hint) => write!(f, "{}; {hint}", self.what),
             None => f.write_str(&self.what),
         }
     }

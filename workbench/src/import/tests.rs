@@ -2,7 +2,7 @@
 
 use hitch_campaign::survey::LogColumn;
 
-use super::{Kind, Mapping, Untold};
+use super::{Kind, Mapping, Undetermined};
 
 fn ramp(step: f64, samples: i32) -> Vec<f64> {
     (0..samples).map(|i| step * f64::from(i)).collect()
@@ -33,7 +33,7 @@ fn table() -> Vec<LogColumn> {
     columns
 }
 
-fn draft(columns: &[LogColumn], named: &[(&str, &str)]) -> (Mapping, Option<Untold>) {
+fn draft(columns: &[LogColumn], named: &[(&str, &str)]) -> (Mapping, Option<Undetermined>) {
     let named: Vec<(String, String)> = named
         .iter()
         .map(|(channel, source)| ((*channel).to_owned(), (*source).to_owned()))
@@ -48,8 +48,8 @@ fn proposed(columns: &[LogColumn], named: &[(&str, &str)]) -> Mapping {
 }
 
 fn refused(columns: &[LogColumn], named: &[(&str, &str)]) -> String {
-    let Untold { what, mend } = draft(columns, named).1.unwrap();
-    format!("{what}; {mend}")
+    let Undetermined { what, hint } = draft(columns, named).1.unwrap();
+    format!("{what}; {hint}")
 }
 
 fn has(mapping: &Mapping, channel: &str) -> bool {

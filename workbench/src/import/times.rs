@@ -4,7 +4,7 @@ use hitch_campaign::survey::{
     LogColumn, TIMES, check_source, is_time_name, is_unit_of_time, unit_size_s, words,
 };
 
-use super::{Mapping, Note, Taken, Untold};
+use super::{Mapping, Note, Taken, Undetermined};
 
 /// Longest step of a log whose unit is assumed, s.
 const LONGEST_STEP_S: f64 = 0.5;
@@ -15,7 +15,7 @@ const SHORTEST_RUN_S: f64 = 0.5;
 ///
 /// # Errors
 /// No unit, or more than one, makes them a run.
-fn assumed_unit(column: &LogColumn) -> Result<(Option<&'static str>, String), Untold> {
+fn assumed_unit(column: &LogColumn) -> Result<(Option<&'static str>, String), Undetermined> {
     const UNITS: [(&str, f64); 7] = [
         ("s", 1.0),
         ("ms", 1e-3),
@@ -50,12 +50,12 @@ fn assumed_unit(column: &LogColumn) -> Result<(Option<&'static str>, String), Un
     if *first >= EPOCH {
         let mut sizes = EPOCH_UNITS.into_iter().filter(|(from, _)| first >= from);
         let size_s = sizes.next().map_or(1.0, |(_, size_s)| size_s);
-        check_run((last - first) * size_s, known.len()).map_err(|no_run| Untold {
+        check_run((last - first) * size_s, known.len()).map_err(|no_run| Undetermined {
             what: format!(
                 "\"{}\" has no unit, and none can be assumed: counted from 1970 it {no_run}",
                 column.name
             ),
-            mend: format!("give it, as in --map {TIMES}=\"{}:us\"", column.name),
+            hint: format!("give it, as in --map {TIMES}=\"{}:us\"", column.name),
         })?;
         let reason = "rises from row to row; assumed to count from 1970: the log states no unit";
         return Ok((None, reason.to_owned()));
@@ -105,20 +105,20 @@ fn assumed_unit(column: &LogColumn) -> Result<(Option<&'static str>, String), Un
             );
             Ok((Some(unit), reason))
         }
-        None => Err(Untold {
+        None => Err(Undetermined {
             what: format!(
                 "\"{}\" has no unit, and none can be assumed: {}, {}",
                 column.name,
                 said("s", 1.0),
                 said("ms", 1e-3)
             ),
-            mend: format!("give it, as in --map {TIMES}=\"{}:ms\"", column.name),
+            hint: format!("give it, as in --map {TIMES}=\"{}:ms\"", column.name),
         }),
     }
 }
 
 /// Checks times with a unit of the log: a run of no length is one in another unit.
-fn check_unit(column: &LogColumn, unit: &str, size: f64) -> Result<(), Untold> {
+fn check_unit(column: &LogColumn, unit: &str, size: f64) -> Result<(), Undetermined> {
     let known = column
         .values
         .iter()
@@ -131,12 +131,12 @@ fn check_unit(column: &LogColumn, unit: &str, size: f64) -> Result<(), Untold> {
     let Err(no_run) = check_run((last - first) * size, known.len()) else {
         return Ok(());
     };
-    Err(Untold {
+    Err(Undetermined {
         what: format!(
             "the times \"{}\" {no_run}; the log states {unit}",
             column.name
         ),
-        mend: format!(
+        hint: format!(
             "give the unit, as in --map {TIMES}=\"{}:{unit}\"",
             column.name
         ),
@@ -159,14 +159,14 @@ fn check_run(lasts_s: f64, samples: usize) -> Result<(), String> {
 ///
 /// # Errors
 /// They do not make a run of a hitch.
-fn check_own(column: &LogColumn) -> Result<(), Untold> {
+fn check_own(column: &LogColumn) -> Result<(), Undetermined> {
     let name = &column.name;
     let Some(lasts_s) = column.lasts_s else {
         return Ok(());
     };
-    check_run(lasts_s, column.values.len()).map_err(|no_run| Untold {
+    check_run(lasts_s, column.values.len()).map_err(|no_run| Undetermined {
         what: format!("the samples of \"{name}\" {no_run}: their times are probably not in s"),
-        mend: format!(
+        hint: format!(
             "save the file with times in s, or accept them with --map lift_current_a=\"{name}:{}\"",
             column.unit.as_deref().unwrap_or("A")
         ),
@@ -181,7 +181,7 @@ fn others(
     main: &LogColumn,
     unit: Option<&str>,
     used: &[&LogColumn],
-) -> Result<Vec<String>, Untold> {
+) -> Result<Vec<String>, Undetermined> {
     /// Largest plausible ratio of the durations of one recording.
     const RATIO: f64 = 10.0;
     let lasts = |column: &LogColumn| {
@@ -200,12 +200,12 @@ fn others(
             let [own_s, main_s] = [(own_lasts, own_unit), (main_lasts, unit)]
                 .map(|(lasts, unit)| lasts * unit_size_s(unit));
             if !(main_s / RATIO..=main_s * RATIO).contains(&own_s) {
-                return Err(Untold {
+                return Err(Undetermined {
                     what: format!(
                         "the times \"{name}\" would last {own_s:.4} s in {own_unit}, and \"{}\" {main_s:.4} s in {unit}",
                         main.name
                     ),
-                    mend: format!(
+                    hint: format!(
                         "write the unit behind the name in the header, as in \"{name} [ms]\", or leave the columns at \
                          these times out with --map CHANNEL="
                     ),
@@ -227,7 +227,10 @@ fn others(
 ///
 /// # Errors
 /// The times do not make a run of a hitch.
-pub fn time(columns: &[LogColumn], lift: Option<&LogColumn>) -> Result<Option<Taken>, Untold> {
+pub fn time(
+    columns: &[LogColumn],
+    lift: Option<&LogColumn>,
+) -> Result<Option<Taken>, Undetermined> {
     let taken = |source: String, reason: &str, is_assumed| Taken {
         channel: TIMES,
         source,
@@ -262,7 +265,7 @@ pub fn time(columns: &[LogColumn], lift: Option<&LogColumn>) -> Result<Option<Ta
 
 impl Mapping {
     /// Notes the times of columns at other rates.
-    pub(super) fn note_other_times(&mut self, columns: &[LogColumn]) -> Result<(), Untold> {
+    pub(super) fn note_other_times(&mut self, columns: &[LogColumn]) -> Result<(), Undetermined> {
         let time = self.taken.iter().find(|taken| taken.channel == TIMES);
         let Some((name, unit)) = time.and_then(|time| check_source(TIMES, &time.source).ok())
         else {
@@ -291,7 +294,7 @@ impl Mapping {
         &self,
         columns: &[LogColumn],
         named: &[(String, String)],
-    ) -> Result<(), Untold> {
+    ) -> Result<(), Undetermined> {
         const LIFT: &str = "lift_current_a";
         let is_given = named.iter().any(|(channel, _)| channel == LIFT);
         match self.source_of(columns, LIFT) {

@@ -17,7 +17,7 @@ use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
 use crate::comparison::Evaluated;
-use crate::explanation::{Candidate, Diagnosis, HOPELESS_BASE};
+use crate::explanation::{Candidate, Diagnosis, UNSUITABLE_BASE};
 use crate::words;
 
 /// Number of candidates that are shown as bars, and in the unfolded table.
@@ -58,7 +58,7 @@ pub fn page(
 fn verdict(shown: &Diagnosis) -> Markup {
     let head = &shown.head;
     html! {
-        @if head.hopeless_base { p { strong { (HOPELESS_BASE) } } }
+        @if head.unsuitable_base { p { strong { (UNSUITABLE_BASE) } } }
         p.lead {
             "Verdict with the best effect alone: " strong { (head.verdict) } ". Error "
             strong { (format!("{:.2}", head.error_before)) } " → " strong { (format!("{:.2}", head.error_after)) }

@@ -155,7 +155,7 @@ impl Answers {
         let text = template.text().map_err(|error| {
             Error::Usage(format!(
                 "the values make no machine: {}; {}",
-                error.what, error.mend
+                error.what, error.hint
             ))
         })?;
         parsed(name, text.as_bytes())

@@ -70,7 +70,7 @@ impl ParameterForm {
         let name = self.name;
         let number = |key: &str, value: Option<f64>| {
             let what = format!("{key} of parameter {} is not a number", index + 1);
-            value.ok_or_else(|| json!({ "what": what, "mend": "write a number" }))
+            value.ok_or_else(|| json!({ "what": what, "hint": "write a number" }))
         };
         let start = number("start", self.start)?;
         let null = match index {
@@ -98,7 +98,7 @@ fn fault(formula: &str, error: &TermError) -> Value {
         }
         _ => None,
     };
-    json!({ "what": error.what, "mend": error.mend, "column": column })
+    json!({ "what": error.what, "hint": error.hint, "column": column })
 }
 
 /// The elements of formulas: places, signals and functions.

@@ -66,7 +66,7 @@ fn fault(error: &Error) -> Value {
             "line": input.place.map(|place| place.line),
             "column": input.place.map(|place| place.column),
             "what": input.what,
-            "mend": input.mend,
+            "hint": input.hint,
         }),
         other => json!({ "what": other.to_string() }),
     }

@@ -21,7 +21,7 @@ export async function startModule(text) {
  * @param {Record<string, unknown>} [body]
  * @returns {any} */
 function ask(path, body = {}) {
-  if (!module) throw new Refused({ what: "The controller has stopped.", mend: "Reload the page." });
+  if (!module) throw new Refused({ what: "The controller has stopped.", hint: "Reload the page." });
   const start = performance.now();
   let text;
   try {
@@ -34,7 +34,7 @@ function ask(path, body = {}) {
   } catch (error) {
     // A module that was aborted has no valid state.
     module = null;
-    throw new Refused({ what: `The controller has stopped: ${error}.`, mend: "Reload the page." });
+    throw new Refused({ what: `The controller has stopped: ${error}.`, hint: "Reload the page." });
   }
   performance.measure(path, { start });
   const { answer, fault } = JSON.parse(text);

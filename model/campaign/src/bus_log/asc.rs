@@ -81,19 +81,19 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<Ending, Cam
 
 /// `base hex  timestamps absolute`
 fn of_heading(line: &Line<'_>) -> Result<Notation, CampaignError> {
-    let mend = "write: base hex timestamps absolute";
+    let hint = "write: base hex timestamps absolute";
     let base = line.word(1, "base")?;
     let radix = match base.text {
         "hex" => 16,
         "dec" => 10,
-        _ => return Err(line.fault(base, 0, "is not a base", mend)),
+        _ => return Err(line.fault(base, 0, "is not a base", hint)),
     };
     let relative = match line.text(3) {
         "" | "absolute" => false,
         "relative" => true,
         _ => {
             let kind = line.word(3, "kind of time stamp")?;
-            return Err(line.fault(kind, 0, "is not a kind of time stamp", mend));
+            return Err(line.fault(kind, 0, "is not a kind of time stamp", hint));
         }
     };
     Ok(Notation { radix, relative })
@@ -171,18 +171,18 @@ fn direction(line: &Line<'_>, word: Word<'_>) -> Result<bool, CampaignError> {
 }
 
 fn identifier(line: &Line<'_>, word: Word<'_>, radix: u32) -> Result<Id, CampaignError> {
-    let mend = "log identifiers as numbers; those of 29 bits have the suffix x";
+    let hint = "log identifiers as numbers; those of 29 bits have the suffix x";
     let digits = word.text.strip_suffix('x');
     let raw = digits_of(digits.unwrap_or(word.text), radix);
     raw.and_then(|raw| Id::new(raw, digits.is_some()))
-        .ok_or_else(|| line.fault(word, 0, "is not an identifier", mend))
+        .ok_or_else(|| line.fault(word, 0, "is not an identifier", hint))
 }
 
 fn number(line: &Line<'_>, word: Word<'_>, radix: u32, largest: u32) -> Result<u32, CampaignError> {
     let value = digits_of(word.text, radix).filter(|&value| value <= largest);
     value.ok_or_else(|| {
-        let mend = format!("the range is 0 to {largest}, in base {radix}");
-        line.fault(word, 0, "is not a number of the required range", &mend)
+        let hint = format!("the range is 0 to {largest}, in base {radix}");
+        line.fault(word, 0, "is not a number of the required range", &hint)
     })
 }
 

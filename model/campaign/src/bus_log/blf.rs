@@ -75,8 +75,8 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<Ending, Cam
 }
 
 fn broken(source: &SourceFile, what: Fault) -> CampaignError {
-    let mend = "copy or log it again; python -m can.logconvert FILE.blf FILE.asc converts what is readable";
-    source.error(what, mend)
+    let hint = "copy or log it again; python -m can.logconvert FILE.blf FILE.asc converts what is readable";
+    source.error(what, hint)
 }
 
 /// Passes the frames of the content of a container; returns the number of bytes of its complete objects.

@@ -43,15 +43,15 @@ fn frame<'f>(
         .strip_prefix('(')
         .and_then(|text| text.strip_suffix(')'));
     let Some(inside) = inside else {
-        let mend = "a line has the form (SECONDS) BUS ID#DATA, as written by `candump -l`";
-        return Err(line.fault(time, 0, "is not a time in parentheses", mend));
+        let hint = "a line has the form (SECONDS) BUS ID#DATA, as written by `candump -l`";
+        return Err(line.fault(time, 0, "is not a time in parentheses", hint));
     };
     let time_s = line.time_s(time, inside)?;
     let channel = line.word(1, "bus")?.text;
     let word = line.word(2, "frame")?;
     let Some((id, data)) = word.text.split_once('#') else {
-        let mend = "a frame has the form ID#DATA, as written by `candump -l`";
-        return Err(line.fault(word, 0, "is not a frame", mend));
+        let hint = "a frame has the form ID#DATA, as written by `candump -l`";
+        return Err(line.fault(word, 0, "is not a frame", hint));
     };
     let Some(id) = identifier(line, word, id)? else {
         return Ok(None);
@@ -84,16 +84,16 @@ fn frame<'f>(
 
 /// The identifier; `None` for an error frame.
 fn identifier(line: &Line<'_>, word: Word<'_>, text: &str) -> Result<Option<Id>, CampaignError> {
-    let mend = "an identifier has three or eight hexadecimal digits";
+    let hint = "an identifier has three or eight hexadecimal digits";
     let is_hex = text.bytes().all(|byte| byte.is_ascii_hexdigit());
     let raw = u32::from_str_radix(text, 16).ok().filter(|_| is_hex);
     match (raw, text.len()) {
         (Some(raw), STANDARD_DIGITS) if Id::new(raw, false).is_none() => {
-            Err(line.fault(word, 0, "has more than 11 bits", mend))
+            Err(line.fault(word, 0, "has more than 11 bits", hint))
         }
         (Some(raw), STANDARD_DIGITS) => Ok(Id::new(raw, false)),
         (Some(raw), EXTENDED_DIGITS) => Ok(Id::new(raw, true)),
-        _ => Err(line.fault(word, 0, "has no identifier", mend)),
+        _ => Err(line.fault(word, 0, "has no identifier", hint)),
     }
 }
 
@@ -105,7 +105,7 @@ fn decoded(
     data: &str,
     bytes: &mut [u8],
 ) -> Result<usize, CampaignError> {
-    let mend = "each data byte has two hexadecimal digits; delete the line if it is truncated";
+    let hint = "each data byte has two hexadecimal digits; delete the line if it is truncated";
     let mut length = 0;
     for (index, pair) in data.as_bytes().chunks(2).enumerate() {
         let digits = std::str::from_utf8(pair).unwrap_or_default();
@@ -113,9 +113,9 @@ fn decoded(
         let value = u8::from_str_radix(digits, 16).ok().filter(|_| is_hex);
         match (value, bytes.get_mut(index)) {
             (Some(value), Some(byte)) => *byte = value,
-            (None, _) => return Err(line.fault(word, begins + 2 * index, "has bad data", mend)),
+            (None, _) => return Err(line.fault(word, begins + 2 * index, "has bad data", hint)),
             (_, None) => {
-                return Err(line.fault(word, begins + 2 * index, "has too many data bytes", mend));
+                return Err(line.fault(word, begins + 2 * index, "has too many data bytes", hint));
             }
         }
         length = index + 1;

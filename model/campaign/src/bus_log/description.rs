@@ -294,11 +294,11 @@ fn conversion(name: &str, unit: &str, column: &Column) -> Result<(f64, f64), Fau
         _ if unit.trim().is_empty() => "has no unit".to_owned(),
         _ => format!("is in {}", quote(unit)),
     };
-    let mend = format!(
+    let hint = format!(
         "a unit like {} is required: correct it in the DBC",
         column.unit
     );
-    Err((format!("signal {name} {what}"), mend))
+    Err((format!("signal {name} {what}"), hint))
 }
 
 fn wrong(name: &str, what: &str) -> Fault {
@@ -310,7 +310,7 @@ fn wrong(name: &str, what: &str) -> Fault {
 
 fn not_dbc(source: &SourceFile, error: &DbcError) -> InputError {
     let said = error.to_string();
-    let mend = "export it again as DBC";
+    let hint = "export it again as DBC";
     // Position of the syntax error: `--> LINE:COLUMN`, and a last line with the expected tokens.
     let place = said.lines().find_map(|line| {
         let (line, column) = line.trim().strip_prefix("--> ")?.split_once(':')?;
@@ -320,8 +320,8 @@ fn not_dbc(source: &SourceFile, error: &DbcError) -> InputError {
         })
     });
     match place {
-        Some(place) => InputError::at(&source.path, place, "this is not DBC", mend),
-        None => source.error(format!("is not DBC: {said}"), mend),
+        Some(place) => InputError::at(&source.path, place, "this is not DBC", hint),
+        None => source.error(format!("is not DBC: {said}"), hint),
     }
 }
 

@@ -96,24 +96,24 @@ pub fn is_one(text: &str) -> bool {
 /// The first fault, with line and column.
 pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), CampaignError> {
     let Some(frames) = Frames::of(&source.text) else {
-        let mend = "export it as .asc or .blf with the logger's tool";
-        return Err(source.error("is not a table of frames", mend));
+        let hint = "export it as .asc or .blf with the logger's tool";
+        return Err(source.error("is not a table of frames", hint));
     };
     for (byte, row) in rows(&source.text, frames.begin, frames.mark) {
         if row.iter().all(str::is_empty) {
             continue;
         }
-        let fault = |index: usize, what: &str, mend: &str| {
+        let fault = |index: usize, what: &str, hint: &str| {
             let what = format!("{} {what}", quote(row.get(index).unwrap_or_default()));
-            cell_error(source, byte, (index, frames.mark.into()), what, mend)
+            cell_error(source, byte, (index, frames.mark.into()), what, hint)
         };
         let cell = |index: usize| row.get(index).unwrap_or_default();
         if frames.others.iter().any(|&index| is_true(cell(index))) {
             continue;
         }
         let id = frames.id(&row).ok_or_else(|| {
-            let mend = "write it in hexadecimal digits, of at most 29 bits";
-            fault(frames.id, "is not an identifier", mend)
+            let hint = "write it in hexadecimal digits, of at most 29 bits";
+            fault(frames.id, "is not an identifier", hint)
         })?;
         let channel = frames.channel.map_or("1", cell);
         if !sink.wants(channel, id) {
@@ -121,12 +121,12 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), Campaig
         }
         let time: Option<f64> = cell(frames.time).parse().ok();
         let time = time.filter(|time| time.is_finite()).ok_or_else(|| {
-            let mend = "write it as a number of seconds";
-            fault(frames.time, "is not a time", mend)
+            let hint = "write it as a number of seconds";
+            fault(frames.time, "is not a time", hint)
         })?;
         let data = frames.data(&row).ok_or_else(|| {
-            let mend = "each byte has two hexadecimal digits; delete the row if it is truncated";
-            fault(frames.data, "is not the data of a frame", mend)
+            let hint = "each byte has two hexadecimal digits; delete the row if it is truncated";
+            fault(frames.data, "is not the data of a frame", hint)
         })?;
         sink.take(&Frame {
             time_s: time * frames.unit_s,

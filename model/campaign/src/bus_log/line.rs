@@ -104,15 +104,15 @@ impl<'a> Line<'a> {
     pub fn word(&self, index: usize, what: &str) -> Result<Word<'a>, CampaignError> {
         self.get(index).ok_or_else(|| {
             let what = format!("the line ends before its {what}");
-            let mend = "delete the truncated line";
-            self.source.error_at(self.end, what, mend)
+            let hint = "delete the truncated line";
+            self.source.error_at(self.end, what, hint)
         })
     }
 
     /// A fault of a word, at byte `inside` of it.
-    pub fn fault(&self, word: Word<'_>, inside: usize, what: &str, mend: &str) -> CampaignError {
+    pub fn fault(&self, word: Word<'_>, inside: usize, what: &str, hint: &str) -> CampaignError {
         let what = format!("{} {what}", quote(word.text));
-        self.source.error_at(word.byte + inside, what, mend)
+        self.source.error_at(word.byte + inside, what, hint)
     }
 
     /// The time stamp in `text`, which is a part of `word`.

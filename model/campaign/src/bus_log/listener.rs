@@ -125,9 +125,9 @@ impl FrameSink for Listener<'_> {
             };
             heard
                 .is_from(sender)
-                .map_err(|(what, mend)| source.error_at(frame.byte, what, mend))?;
+                .map_err(|(what, hint)| source.error_at(frame.byte, what, hint))?;
             let time_s = sampled_s(&mut self.clocks, heard.message, frame, logged_s);
-            let time_s = time_s.map_err(|(what, mend)| source.error_at(frame.byte, what, mend))?;
+            let time_s = time_s.map_err(|(what, hint)| source.error_at(frame.byte, what, hint))?;
             heard.sample(source, frame, time_s)?;
         }
         Ok(())
@@ -216,7 +216,7 @@ impl Received<'_> {
         time_s: f64,
     ) -> Result<(), CampaignError> {
         for (sampled, series) in self.message.signals.iter().zip(&mut self.series) {
-            let fault = |(what, mend): (String, String)| source.error_at(frame.byte, what, mend);
+            let fault = |(what, hint): (String, String)| source.error_at(frame.byte, what, hint);
             let Some(value) = value(&sampled.signal, frame).map_err(fault)? else {
                 continue;
             };

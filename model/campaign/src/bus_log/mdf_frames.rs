@@ -43,8 +43,8 @@ fn open(path: &Path) -> falcon_mdf::Result<(Mf4File, Ending)> {
 /// The file cannot be read.
 pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<Ending, CampaignError> {
     let fault = |error: falcon_mdf::Mf4Error| {
-        let mend = "export it as .asc or .blf with the logger's tool";
-        source.error(format!("cannot be read as MDF: {error}"), mend)
+        let hint = "export it as .asc or .blf with the logger's tool";
+        source.error(format!("cannot be read as MDF: {error}"), hint)
     };
     let (file, ending) = open(&source.path).map_err(fault)?;
     let mut groups = Vec::new();
@@ -62,8 +62,8 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<Ending, Cam
             continue;
         };
         if !frame.timestamp.is_finite() {
-            let mend = "export it again with time stamps";
-            return Err(source.error("has a frame without a time", mend));
+            let hint = "export it again with time stamps";
+            return Err(source.error("has a frame without a time", hint));
         }
         sink.take(&Frame {
             time_s: frame.timestamp,

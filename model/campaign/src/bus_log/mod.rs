@@ -112,7 +112,7 @@ pub fn check_known(path: &Path) -> Result<(), CampaignError> {
     let found =
         formats.find(|(index, (mark, ..))| begin.starts_with(mark) || (is_trace && *index == 0));
     match found {
-        Some((_, (_, what, mend))) => Err(InputError::of_file(path, what, mend)),
+        Some((_, (_, what, hint))) => Err(InputError::of_file(path, what, hint)),
         None => Ok(()),
     }
 }

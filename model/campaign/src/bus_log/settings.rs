@@ -97,9 +97,9 @@ impl BusSettings {
         };
         let signals = table.table("signals")?;
         if own.is_some() && signals.is_none() {
-            let mend =
+            let hint =
                 "assign the columns under [can.signals], as in lift_current_a = \"Message.Signal\"";
-            return Err(table.error("[can] has a dbc but no signals", mend));
+            return Err(table.error("[can] has a dbc but no signals", hint));
         }
         let is_j1939 = match table.text("identifiers")? {
             None | Some("exact") => false,
@@ -153,7 +153,7 @@ impl BusSettings {
             };
             self.forget(column);
             self.take(description, column, path, clock)
-                .map_err(|(what, mend)| signals.error_at(column.name, what, mend))?;
+                .map_err(|(what, hint)| signals.error_at(column.name, what, hint))?;
         }
         Ok(())
     }

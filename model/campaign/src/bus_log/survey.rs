@@ -80,7 +80,7 @@ pub fn signals(
     }
     if columns.is_empty() {
         let name = dbc.path.display();
-        let (what, mend) = if !is_heard {
+        let (what, hint) = if !is_heard {
             (
                 format!("contains no message of {name}"),
                 "name the DBC of this bus",
@@ -91,7 +91,7 @@ pub fn signals(
                 "correct the units in the DBC: A, mA, bar, kPa, deg, l/min and the like",
             )
         };
-        return Err(source.error(what, mend));
+        return Err(source.error(what, hint));
     }
     Ok(Signals {
         columns,

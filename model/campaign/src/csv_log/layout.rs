@@ -280,9 +280,9 @@ impl<'s> Layout<'s> {
             ""
         };
         let what = format!("{} is not a time{as_before}", quote(row.cell(column)));
-        let mend = "every row needs a number, a date with a time of day (21.11.2026 10:00:00.020, \
+        let hint = "every row needs a number, a date with a time of day (21.11.2026 10:00:00.020, \
                     2026-11-21T10:00:00Z, 21-Nov-2026 10:00:00), or a time of day";
-        self.fault(row.byte, column, what, mend)
+        self.fault(row.byte, column, what, hint)
     }
 
     /// The fault of a row that does not have the cells of the header.
@@ -301,24 +301,24 @@ impl<'s> Layout<'s> {
             record.len(),
             self.header.width
         );
-        let mend = if is_long {
+        let hint = if is_long {
             "each cell needs a name above it: name all columns in the header, and separate the columns by semicolons if numbers have a decimal comma"
         } else {
             "write the separators of empty cells too"
         };
-        Some(self.source.error_at(byte, what, mend))
+        Some(self.source.error_at(byte, what, hint))
     }
 
     /// A fault of a cell of a row.
-    pub fn fault(&self, byte: usize, column: usize, what: String, mend: &str) -> CampaignError {
+    pub fn fault(&self, byte: usize, column: usize, what: String, hint: &str) -> CampaignError {
         let cell = (self.cell(column), self.header.mark.into());
-        cell_error(self.source, byte, cell, what, mend)
+        cell_error(self.source, byte, cell, what, hint)
     }
 
     /// A fault of a name in the header.
-    pub fn fault_of_name(&self, column: usize, what: String, mend: &str) -> CampaignError {
+    pub fn fault_of_name(&self, column: usize, what: String, hint: &str) -> CampaignError {
         let cell = (column, self.header.mark.into());
-        cell_error(self.source, self.header.byte, cell, what, mend)
+        cell_error(self.source, self.header.byte, cell, what, hint)
     }
 
     /// Index of the cell of a column in a row.

@@ -83,13 +83,13 @@ fn index_of(
         (Some(index), None) => Ok(Some(index)),
         (Some(first), Some(second)) => {
             let what = format!("column {} is duplicated", quote(&wanted.name));
-            let mend = format!("assign {} or {}", cells[first].name, cells[second].name);
-            Err(layout.fault_of_name(second, what, &mend))
+            let hint = format!("assign {} or {}", cells[first].name, cells[second].name);
+            Err(layout.fault_of_name(second, what, &hint))
         }
         (None, _) if !wanted.is_required => Ok(None),
         (None, _) => {
-            let (what, mend) = wanted.missing("column", &layout.header.names());
-            Err(source.error_at(layout.header.byte, what, mend))
+            let (what, hint) = wanted.missing("column", &layout.header.names());
+            Err(source.error_at(layout.header.byte, what, hint))
         }
     }
 }
@@ -107,8 +107,8 @@ impl<'a> Reader<'a> {
         }
         let time = found.iter().find(|(wanted, _)| is_time(wanted.column));
         let &(time, main) = time.ok_or_else(|| {
-            let (what, mend) = unassigned("column", &TIMES);
-            source.error_at(layout.header.byte, what, mend)
+            let (what, hint) = unassigned("column", &TIMES);
+            source.error_at(layout.header.byte, what, hint)
         })?;
         let unit = |index: usize| layout.header.cells[index].unit.as_deref();
         let column_of = |index: usize, scale| TimeColumn {
@@ -127,7 +127,7 @@ impl<'a> Reader<'a> {
             .filter(|(wanted, _)| !is_time(wanted.column))
         {
             let scale = wanted.scale(unit(index));
-            let scale = scale.map_err(|(what, mend)| layout.fault_of_name(index, what, &mend))?;
+            let scale = scale.map_err(|(what, hint)| layout.fault_of_name(index, what, &hint))?;
             let base = base_of(&layout.bases, index, main, lift);
             let known = times.iter().position(|times| times.index == base);
             let place = known.unwrap_or(times.len());
@@ -173,7 +173,7 @@ impl<'a> Reader<'a> {
                 let index = self.columns[own].index;
                 let value = value(&self.columns[own], layout, self.linkage, row.cell(index));
                 let value =
-                    value.map_err(|(what, mend)| layout.fault(row.byte, index, what, &mend))?;
+                    value.map_err(|(what, hint)| layout.fault(row.byte, index, what, &hint))?;
                 self.columns[own].values.push(value);
             }
             time.times_s.push(time_s);
@@ -190,16 +190,16 @@ impl<'a> Reader<'a> {
         let main = lift.map_or(0, |lift| lift.times);
         let rows = &self.times[main];
         if rows.bytes.is_empty() {
-            let mend = "log the run again";
-            return Err(source.error("contains a header but no samples", mend));
+            let hint = "log the run again";
+            return Err(source.error("contains a header but no samples", hint));
         }
         let mut columns = Vec::new();
         for taken in &self.columns {
             let times = &self.times[taken.times];
             if !taken.is_own && taken.values.iter().all(|value| value.is_nan()) {
                 let what = format!("column {} contains no number", quote(&taken.name));
-                let mend = "assign another column, or delete its line under [columns]";
-                return Err(layout.fault_of_name(taken.index, what, mend));
+                let hint = "assign another column, or delete its line under [columns]";
+                return Err(layout.fault_of_name(taken.index, what, hint));
             }
             if taken.times != main {
                 times.check(layout)?;
@@ -239,8 +239,8 @@ impl TimeColumn {
             self.times_s[at + 1],
             self.times_s[at]
         );
-        let mend = "the times of each rate have to rise from row to row";
-        Err(layout.fault(self.bytes[at + 1], self.index, what, mend))
+        let hint = "the times of each rate have to rise from row to row";
+        Err(layout.fault(self.bytes[at + 1], self.index, what, hint))
     }
 }
 
@@ -257,8 +257,8 @@ fn value(
     }
     let Some(number) = layout.decimals[taken.index].number(cell) else {
         let what = format!("{} in column {} is not a number", quote(cell), quote(name));
-        let mend = "leave the cell of a dropout empty; decimals have a point or a comma, thousands no separator";
-        return Err((what, mend.to_owned()));
+        let hint = "leave the cell of a dropout empty; decimals have a point or a comma, thousands no separator";
+        return Err((what, hint.to_owned()));
     };
     let value = taken.scale.apply(number, linkage);
     let empty = "leave the cell of a dropout empty";

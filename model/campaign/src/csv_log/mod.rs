@@ -65,8 +65,8 @@ pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
     }
     let table = text_table(source)?.ok_or_else(|| {
         let what = "is not a table: there is no header above the rows of numbers";
-        let mend = "export it with a header, and commas, semicolons or tabs between the columns";
-        source.error(what, mend)
+        let hint = "export it with a header, and commas, semicolons or tabs between the columns";
+        source.error(what, hint)
     })?;
     let TextTable { columns, notes, .. } = table;
     Ok(Survey::Table { columns, notes })

@@ -23,8 +23,8 @@ use crate::table::{Table, cell_error};
 pub fn read(source: &Arc<SourceFile>, linkage: &Linkage) -> Result<Table, CampaignError> {
     let mark = mark(source);
     let Some((byte, record)) = rows(&source.text, 0, mark).next() else {
-        let mend = "a log has a header, and one row for each sample";
-        return Err(source.error("is empty", mend));
+        let hint = "a log has a header, and one row for each sample";
+        return Err(source.error("is empty", hint));
     };
     let columns = columns(source, &record, mark, byte)?;
     let mut header = Header::at(&source.text, mark, byte, &record);
@@ -33,9 +33,9 @@ pub fn read(source: &Arc<SourceFile>, linkage: &Linkage) -> Result<Table, Campai
     }
     let layout = Layout::new(source, header);
     if let Some(assumed) = layout.notes.first() {
-        let mend =
+        let hint =
             "the project's format has one cell for each name, and no separators of thousands";
-        return Err(source.error_at(byte, assumed.as_str(), mend));
+        return Err(source.error_at(byte, assumed.as_str(), hint));
     }
     mapped::read(source, &layout, &ColumnSettings::by_own_names(), linkage)
 }
@@ -73,8 +73,8 @@ fn columns(
     for (index, given) in header.iter().enumerate() {
         let at = (index, mark.into());
         let Some(column) = column(given) else {
-            let (what, mend) = unknown_column(given, index);
-            return Err(cell_error(source, byte, at, what, mend));
+            let (what, hint) = unknown_column(given, index);
+            return Err(cell_error(source, byte, at, what, hint));
         };
         if columns.contains(&column) {
             let what = format!("column {given} is duplicated");

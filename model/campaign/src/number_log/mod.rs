@@ -53,7 +53,7 @@ impl NumberLog {
             _ => return Ok(None),
         };
         let source = SourceFile::named(path);
-        let columns = columns.map_err(|(what, mend)| source.error(what, mend))?;
+        let columns = columns.map_err(|(what, hint)| source.error(what, hint))?;
         let channel = |column: &NumberColumn| LogChannel {
             name: column.name.clone(),
             unit: column.unit.clone(),
@@ -107,8 +107,8 @@ impl NumberLog {
             return Ok((own, Times::new(None, DateOrder::default())));
         }
         let Some(time) = time else {
-            let (what, mend) = unassigned("column", &TIMES);
-            return Err(self.source.error(what, mend));
+            let (what, hint) = unassigned("column", &TIMES);
+            return Err(self.source.error(what, hint));
         };
         let named = self
             .columns
@@ -125,8 +125,8 @@ impl NumberLog {
                 quote(&found.name),
                 found.values.len()
             );
-            let mend = "assign the times of this column, or save it as a struct with the fields Time and Data";
-            return Err(self.source.error(what, mend));
+            let hint = "assign the times of this column, or save it as a struct with the fields Time and Data";
+            return Err(self.source.error(what, hint));
         }
         let unit = |index: usize| self.columns[index].unit.as_deref();
         let main_scale = time.scale(unit(main)).ok();
@@ -173,8 +173,8 @@ impl ChannelFile for NumberLog {
                     index + 1,
                     quote(&column.name)
                 );
-                let mend = "remove the samples without a time, and save the file again";
-                return Err(self.source.error(what, mend));
+                let hint = "remove the samples without a time, and save the file again";
+                return Err(self.source.error(what, hint));
             };
             times_s.push(time_s);
         }

@@ -16,5 +16,5 @@ pub struct NumberColumn {
     pub states_times: bool,
 }
 
-/// A fault of a file: what is wrong, and how to mend it.
+/// A fault of a file: what is wrong, and how to correct it.
 pub type Fault = (String, &'static str);

@@ -122,7 +122,7 @@ impl Checker<'_> {
             return Ok(base_dimension);
         }
         let piece = |node: &Node| &self.text[node.span.clone()];
-        let mend = || {
+        let hint = || {
             format!(
                 "write (({}) / 1[{base_dimension}])^({})",
                 piece(base),
@@ -134,14 +134,14 @@ impl Checker<'_> {
                 "the base is {}, so its exponent has to be a written number such as 2, 0.5 or (1/3)",
                 base_dimension.in_words()
             );
-            return Err(self.fault(node, &what, mend()));
+            return Err(self.fault(node, &what, hint()));
         };
         base_dimension.power(written).ok_or_else(|| {
             let what = format!(
                 "the base is {}, which has no power of {written}",
                 base_dimension.in_words()
             );
-            self.fault(node, &what, mend())
+            self.fault(node, &what, hint())
         })
     }
 
@@ -153,9 +153,9 @@ impl Checker<'_> {
         )
     }
 
-    fn fault(&self, node: &Node, what: &str, mend: impl Into<String>) -> Fault {
+    fn fault(&self, node: &Node, what: &str, hint: impl Into<String>) -> Fault {
         let piece = shown(&self.text[node.span.clone()]);
-        Fault::at(self.text, node.span.start, format!("{piece}: {what}"), mend)
+        Fault::at(self.text, node.span.start, format!("{piece}: {what}"), hint)
     }
 }
 

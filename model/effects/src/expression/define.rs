@@ -55,13 +55,13 @@ fn check_place(place: Place, found: Dimension) -> Result<(), TermError> {
         place.id(),
         wanted.in_words()
     );
-    let mend = match wanted.over(found) {
+    let hint = match wanted.over(found) {
         Some(factor) => {
             format!("multiply it by something in {factor}")
         }
         None => format!("write a formula in {wanted}"),
     };
-    Err(TermError::new(Part::Formula(0), what, mend))
+    Err(TermError::new(Part::Formula(0), what, hint))
 }
 
 fn check_use(tree: &Node, names: &[&str]) -> Result<(), TermError> {

@@ -66,12 +66,12 @@ pub struct TermError {
     /// Description.
     pub what: String,
     /// Suggested correction.
-    pub mend: String,
+    pub hint: String,
 }
 
 impl std::fmt::Display for TermError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}; {}", self.what, self.mend)
+        write!(f, "{}; {}", self.what, self.hint)
     }
 }
 
@@ -79,15 +79,15 @@ impl std::error::Error for TermError {}
 
 impl From<Fault> for TermError {
     fn from(fault: Fault) -> Self {
-        Self::new(Part::Formula(fault.byte), fault.what, fault.mend)
+        Self::new(Part::Formula(fault.byte), fault.what, fault.hint)
     }
 }
 
 impl TermError {
     /// A fault of a part.
-    pub fn new(part: Part, what: impl Into<String>, mend: impl Into<String>) -> Self {
-        let (what, mend) = (what.into(), mend.into());
-        Self { part, what, mend }
+    pub fn new(part: Part, what: impl Into<String>, hint: impl Into<String>) -> Self {
+        let (what, hint) = (what.into(), hint.into());
+        Self { part, what, hint }
     }
 }
 
@@ -130,23 +130,23 @@ pub(crate) fn check_id(id: &str) -> Result<(), TermError> {
 pub(crate) fn check_parameters(parameters: &[ParameterDefinition]) -> Result<Vec<Unit>, TermError> {
     let count = parameters.len();
     if count == 0 {
-        let mend = "add a [[term.parameter]]: the first one is the size of the term, which a fit estimates";
+        let hint = "add a [[term.parameter]]: the first one is the size of the term, which a fit estimates";
         return Err(TermError::new(
             Part::Parameters,
             "the term has no parameter",
-            mend,
+            hint,
         ));
     }
     if count > MOST_PARAMETERS {
         let what = format!("the term has {count} parameters");
-        let mend = format!("the maximum is {MOST_PARAMETERS}; write known values as numbers");
-        return Err(TermError::new(Part::Parameters, what, mend));
+        let hint = format!("the maximum is {MOST_PARAMETERS}; write known values as numbers");
+        return Err(TermError::new(Part::Parameters, what, hint));
     }
     let check = |(index, parameter): (usize, &ParameterDefinition)| {
         check_name(index, parameters)?;
         check_range(index, parameter)?;
         let fault =
-            |fault: Fault| TermError::new(Part::Parameter(index, "unit"), fault.what, fault.mend);
+            |fault: Fault| TermError::new(Part::Parameter(index, "unit"), fault.what, fault.hint);
         Unit::parse(&parameter.unit).map_err(fault)
     };
     parameters.iter().enumerate().map(check).collect()
@@ -156,11 +156,11 @@ fn check_name(index: usize, parameters: &[ParameterDefinition]) -> Result<(), Te
     let parameter = &parameters[index];
     let name = parameter.name.as_str();
     let earlier = &parameters[..index];
-    let fault = |what: &str, mend: &str| {
+    let fault = |what: &str, hint: &str| {
         Err(TermError::new(
             Part::Parameter(index, "name"),
             format!("{} {what}", shown(name)),
-            mend,
+            hint,
         ))
     };
     if !is_whole_name(name) || name.len() > 40 {
@@ -195,8 +195,8 @@ fn check_range(index: usize, parameter: &ParameterDefinition) -> Result<(), Term
         high,
         ..
     } = parameter;
-    let fault = |key, what: String, mend: &str| {
-        Err(TermError::new(Part::Parameter(index, key), what, mend))
+    let fault = |key, what: String, hint: &str| {
+        Err(TermError::new(Part::Parameter(index, key), what, hint))
     };
     if !(low.is_finite() && high.is_finite() && low < high) {
         return fault(
@@ -221,11 +221,11 @@ fn check_range(index: usize, parameter: &ParameterDefinition) -> Result<(), Term
         );
     }
     if index == 0 && start == null {
-        let mend = "use the expected size as start value";
+        let hint = "use the expected size as start value";
         return fault(
             "start",
             format!("{name} starts at its null value, so the term is off"),
-            mend,
+            hint,
         );
     }
     Ok(())

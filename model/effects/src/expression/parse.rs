@@ -83,9 +83,9 @@ impl<'t> Parser<'t> {
         &self,
         span: &Range<usize>,
         what: impl Into<String>,
-        mend: impl Into<String>,
+        hint: impl Into<String>,
     ) -> Fault {
-        Fault::at(self.text, span.start, what, mend)
+        Fault::at(self.text, span.start, what, hint)
     }
 
     /// An expression whose operators all have at least this precedence.
@@ -128,14 +128,14 @@ impl<'t> Parser<'t> {
                 Ok(Node { outer, ..inner })
             }
             TokenKind::End => {
-                let mend = "a number, a name or a parenthesis has to follow";
-                Err(self.fault(&token.span, "the formula ends too early", mend))
+                let hint = "a number, a name or a parenthesis has to follow";
+                Err(self.fault(&token.span, "the formula ends too early", hint))
             }
             TokenKind::Sign(_) | TokenKind::Unit => {
                 let piece = shown(self.piece(&token.span));
                 let what = format!("found {piece}, expected a number, a name or a parenthesis");
-                let mend = "write an operator between two operands, and a unit after a number";
-                Err(self.fault(&token.span, what, mend))
+                let hint = "write an operator between two operands, and a unit after a number";
+                Err(self.fault(&token.span, what, hint))
             }
         }
     }
@@ -166,8 +166,8 @@ impl<'t> Parser<'t> {
         }
         let what = format!("name {} is not known", shown(name));
         if Function::named(name).is_some() {
-            let mend = format!("it is a function: write {name}(...)");
-            return Err(self.fault(&span, what, mend));
+            let hint = format!("it is a function: write {name}(...)");
+            return Err(self.fault(&span, what, hint));
         }
         let signals = SIGNALS.iter().map(|signal| signal.name);
         Err(self.unknown(

@@ -64,17 +64,17 @@ pub(crate) fn check(term: &Term, tree: &Node) -> Result<(), TermError> {
 
 fn finite(term: &Term, tree: &Node, values: &[f64]) -> Result<(), TermError> {
     let what = "the term is not a finite number";
-    let mend = "keep divisors away from zero, as in max(x, 1[mm]), and arguments of roots and logarithms positive; or narrow the \
+    let hint = "keep divisors away from zero, as in max(x, 1[mm]), and arguments of roots and logarithms positive; or narrow the \
                 ranges of the parameters";
-    refuse_where(term, tree, values, |value| !value.is_finite(), what, mend)
+    refuse_where(term, tree, values, |value| !value.is_finite(), what, hint)
 }
 
 fn off(term: &Term, tree: &Node, values: &[f64]) -> Result<(), TermError> {
     let what = "the term is not zero at the null value of its size";
     let name = &term.definition().parameters[0].name;
-    let mend =
+    let hint =
         format!("multiply the whole formula by {name}, or correct null, or list the size first");
-    refuse_where(term, tree, values, |value| value != 0.0, what, &mend)
+    refuse_where(term, tree, values, |value| value != 0.0, what, &hint)
 }
 
 fn refuse_where(
@@ -83,13 +83,13 @@ fn refuse_where(
     values: &[f64],
     wrong: fn(f64) -> bool,
     what: &str,
-    mend: &str,
+    hint: &str,
 ) -> Result<(), TermError> {
     let si = term.si(values);
     let state = STATES.iter().find(|state| wrong(term.evaluate(&si, state)));
     state.map_or(Ok(()), |state| {
         let what = format!("{what} at {}", circumstances(term, tree, values, state));
-        Err(TermError::new(Part::Formula(0), what, mend))
+        Err(TermError::new(Part::Formula(0), what, hint))
     })
 }
 

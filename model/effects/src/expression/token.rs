@@ -117,8 +117,8 @@ fn number(text: &str, at: usize) -> Result<(TokenKind, usize), Fault> {
         _ => {
             let end = rest.find(|c| !is_name(c) && c != '.').unwrap_or(rest.len());
             let what = format!("{} is not a number", shown(&rest[..end]));
-            let mend = "write it like 0.5 or 2e-3, a unit like 3[mm/s], a product like 2 * x";
-            Err(Fault::at(text, at, what, mend))
+            let hint = "write it like 0.5 or 2e-3, a unit like 3[mm/s], a product like 2 * x";
+            Err(Fault::at(text, at, what, hint))
         }
     }
 }
@@ -150,7 +150,7 @@ fn stray(text: &str, at: usize, c: char) -> Fault {
         "{} does not belong in a formula",
         shown(&c.escape_debug().to_string())
     );
-    let mend = match c {
+    let hint = match c {
         '<' | '>' | '=' | '!' | '&' | '|' | '?' => {
             "comparisons are not supported: write step(a - b) for 1 where a > b"
         }
@@ -160,7 +160,7 @@ fn stray(text: &str, at: usize, c: char) -> Fault {
         ';' => "arguments are parted by commas",
         _ => "it holds numbers, names, + - * / ^, parentheses, commas and units such as 3[mm/s]",
     };
-    Fault::at(text, at, what, mend)
+    Fault::at(text, at, what, hint)
 }
 
 #[cfg(test)]

@@ -93,7 +93,7 @@ impl LinkageError {
 
     /// Suggested correction.
     #[must_use]
-    pub fn mend(&self) -> String {
+    pub fn hint(&self) -> String {
         match self {
             Self::Stroke { most_m, .. } => format!(
                 "let stroke_mm of [cylinder] be less than {:.0}, or rocker_arm_m of [linkage] longer",

@@ -49,8 +49,8 @@ pub fn with_settings(
         set(&mut changed, setting)?;
     }
     changed.sealed().validate().map_err(|error| {
-        let (_, what, mend) = objection(error);
-        format!("{what}; {mend}")
+        let (_, what, hint) = objection(error);
+        format!("{what}; {hint}")
     })
 }
 

@@ -30,7 +30,7 @@ pub enum Phase {
 pub struct Fault {
     /// The status that it returns.
     pub status: Status,
-    /// What is wrong and how to mend it.
+    /// What is wrong and how to correct it.
     pub message: String,
 }
 

@@ -79,7 +79,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
 /// Makes an instance of the content of a folder.
 ///
 /// # Errors
-/// If it has no name, the content is wrong, or its checksum is another one; what is wrong and how to mend it.
+/// If it has no name, the content is wrong, or its checksum is another one; what is wrong and how to correct it.
 fn make_instance(
     name: Option<&str>,
     guid: Option<&str>,

@@ -53,7 +53,7 @@ impl<T: JsonSchema> JsonSchema for Success<T> {
 pub struct Failure {
     /// Folder of the campaign, as it was given.
     campaign: String,
-    /// What is wrong, where, and how to mend it.
+    /// What is wrong, where, and how to correct it.
     error: String,
 }
 

@@ -37,8 +37,8 @@ pub fn read(path: &Path) -> Result<ValveCurve, InputError> {
     let ([currents, flows], bytes) = (table.columns, table.bytes);
     let passes_at_rest = flows.first().is_some_and(|&flow| flow > 0.0);
     if passes_at_rest {
-        let mend = "insert a first row with the opening current and flow 0";
-        return Err(source.error_at(bytes[0], "the flow of the first point is not zero", mend));
+        let hint = "insert a first row with the opening current and flow 0";
+        return Err(source.error_at(bytes[0], "the flow of the first point is not zero", hint));
     }
     ValveCurve::new(currents, flows).map_err(|error| match error {
         ValveCurveError::Order { index } => {

@@ -36,22 +36,22 @@ impl<const N: usize> NumberTable<N> {
     pub fn read(source: &SourceFile, wanted: &[Wanted; N]) -> Result<Self, InputError> {
         let table = text_table(source)?.ok_or_else(|| {
             let example = wanted[0].example;
-            let mend = format!(
+            let hint = format!(
                 "write a header such as {example} above the numbers, and one row for each point"
             );
-            source.error("is not a table with a header", mend)
+            source.error("is not a table with a header", hint)
         })?;
         let mut columns = [const { Vec::new() }; N];
         for (values, wanted) in columns.iter_mut().zip(wanted) {
             let (found, si) = column(&table.columns, wanted).ok_or_else(|| {
                 let what = format!("no column is a {} in {}", wanted.quantity, wanted.offered);
-                let mend = format!("write the unit in the header, as in {}", wanted.example);
-                source.error_at(table.header, what, mend)
+                let hint = format!("write the unit in the header, as in {}", wanted.example);
+                source.error_at(table.header, what, hint)
             })?;
             if let Some(row) = found.values.iter().position(|value| value.is_nan()) {
                 let what = format!("the cell of {} is not a number", quote(&found.name));
-                let mend = "write a number, or delete the row";
-                return Err(source.error_at(table.rows[row], what, mend));
+                let hint = "write a number, or delete the row";
+                return Err(source.error_at(table.rows[row], what, hint));
             }
             *values = found.values.iter().map(|value| si * value).collect();
         }

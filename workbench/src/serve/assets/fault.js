@@ -9,6 +9,6 @@ export function faultLines(error) {
   const fault = error instanceof Refused ? error.fault : { what: String(error) };
   const where = fault.file && [fault.file, fault.line, fault.column].filter((part) => part != null).join(":");
   const lines = [where && element("p", {}, element("code", {}, where)), element("p", {}, fault.what),
-    fault.mend && element("p", {}, `Suggested correction: ${fault.mend}.`)];
+    fault.hint && element("p", {}, `Suggested correction: ${fault.hint}.`)];
   return lines.filter((line) => line instanceof Node);
 }

@@ -15,5 +15,5 @@ export function say(text) {
 /** Shows an error for some seconds.
  * @param {unknown} error */
 export function sayError(error) {
-  say(error instanceof Refused ? [error.fault.what, error.fault.mend].filter(Boolean).join(" ") : String(error));
+  say(error instanceof Refused ? [error.fault.what, error.fault.hint].filter(Boolean).join(" ") : String(error));
 }

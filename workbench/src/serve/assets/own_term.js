@@ -80,7 +80,7 @@ async function check() {
     (error) => (error instanceof Refused ? error.fault : { what: String(error) }));
   if (number !== asked) return false;
   const where = fault?.column ? `Column ${fault.column}: ` : "";
-  byId("term-fault").textContent = fault ? `${where}${[fault.what, fault.mend].filter(Boolean).join("; ")}` : "The term is valid.";
+  byId("term-fault").textContent = fault ? `${where}${[fault.what, fault.hint].filter(Boolean).join("; ")}` : "The term is valid.";
   byId("term-formula").setAttribute("aria-invalid", String(Boolean(fault?.column)));
   byId("term-caret").textContent = fault?.column ? `${" ".repeat(fault.column - 1)}^` : "";
   return !fault;

@@ -1,7 +1,7 @@
 // @ts-check
 /** A request without an answer. */
 
-/** @typedef {{file?: string, line?: number, column?: number, what: string, mend?: string}} Fault */
+/** @typedef {{file?: string, line?: number, column?: number, what: string, hint?: string}} Fault */
 
 /** A refused or failed request. */
 export class Refused extends Error {

@@ -62,7 +62,7 @@ export async function refusal(response) {
 /** @param {Promise<Response>} request */
 async function answer(request) {
   const response = await request.catch(() => {
-    throw new Refused({ what: "The server does not answer.", mend: "Start hitch serve again." });
+    throw new Refused({ what: "The server does not answer.", hint: "Start hitch serve again." });
   });
   if (!response.ok) throw await refusal(response);
   return response.json();

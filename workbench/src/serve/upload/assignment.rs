@@ -145,7 +145,7 @@ impl Assignment {
 fn unplaced(folder: &Path, error: Error) -> Error {
     match error {
         Error::Input(input) if input.file == folder.join(MANIFEST) => {
-            Error::Usage(format!("{}; {}", input.what, input.mend))
+            Error::Usage(format!("{}; {}", input.what, input.hint))
         }
         other => other,
     }
@@ -155,9 +155,9 @@ fn mapping(group: &Group, given: &[Source]) -> Result<Mapping, Error> {
     let heading = group.headings.first().map_or("", String::as_str);
     for source in given {
         if let Some(what) = source.lacks_unit(group) {
-            let mend = "choose its unit in the table; for the raw values of a sensor, choose \"V, two known points\" or another raw \
+            let hint = "choose its unit in the table; for the raw values of a sensor, choose \"V, two known points\" or another raw \
                         unit and enter two readings with their true values";
-            return Err(CampaignError::of_file(Path::new(heading), what, mend).into());
+            return Err(CampaignError::of_file(Path::new(heading), what, hint).into());
         }
     }
     let named = given
@@ -171,7 +171,7 @@ fn mapping(group: &Group, given: &[Source]) -> Result<Mapping, Error> {
 
 impl Stand {
     fn bench(self, log: &Path) -> Result<Bench, Error> {
-        let missing = |what: &str, mend: &str| CampaignError::of_file(log, what, mend);
+        let missing = |what: &str, hint: &str| CampaignError::of_file(log, what, hint);
         Ok(match self {
             Self::Hitch { load_kg } => Bench::Hitch {
                 load_kg: load_kg

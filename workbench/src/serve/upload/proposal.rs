@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::error::Error;
 use crate::import::files::columns;
-use crate::import::{Columns, Files, Kind, Mapping, Taken, Untold, load_in_name};
+use crate::import::{Columns, Files, Kind, Mapping, Taken, Undetermined, load_in_name};
 
 /// Name of a campaign's manifest.
 pub const MANIFEST: &str = "campaign.toml";
@@ -49,7 +49,7 @@ pub struct Group {
     /// What could be determined.
     pub mapping: Mapping,
     /// What could not be determined.
-    pub untold: Option<Untold>,
+    pub untold: Option<Undetermined>,
 }
 
 impl Proposal {
@@ -68,9 +68,9 @@ impl Proposal {
         }
         let is_toml = |file: &&PathBuf| file.extension().is_some_and(|end| end == "toml");
         if let Some(file) = files.iter().find(is_toml) {
-            let mend =
+            let hint =
                 "a campaign's manifest is named campaign.toml; delete other files of this kind";
-            return Err(CampaignError::of_file(file, "is not a log", mend).into());
+            return Err(CampaignError::of_file(file, "is not a log", hint).into());
         }
         let mut files = Files::sort(files)?;
         let mut groups = Vec::new();
@@ -118,8 +118,8 @@ fn check_files(folder: &Path) -> Result<(), Error> {
         Some(file) => {
             let named = file.strip_prefix(folder).unwrap_or(file);
             let what = format!("names the file {:?} in another folder", named.display());
-            let mend = "open that file together with it, and name it without its folder";
-            Err(CampaignError::of_file(&folder.join(MANIFEST), what, mend).into())
+            let hint = "open that file together with it, and name it without its folder";
+            Err(CampaignError::of_file(&folder.join(MANIFEST), what, hint).into())
         }
     }
 }

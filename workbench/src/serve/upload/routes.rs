@@ -223,7 +223,7 @@ fn named(upload: &Upload, error: Error) -> Error {
         Error::Input(input) => Error::Input(InputError {
             file: Path::new(&within(&input.file.to_string_lossy())).to_path_buf(),
             what: within(&input.what),
-            mend: within(&input.mend),
+            hint: within(&input.hint),
             ..input
         }),
         Error::Usage(text) => Error::Usage(within(&text)),
