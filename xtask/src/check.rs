@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use arm_build::images::BOARDS;
-use arm_build::toolchain::Way;
+use arm_build::toolchain::{ARM, Way};
 use arm_build::{process, setup, workspace};
 
 use crate::timings::Timings;
@@ -37,7 +37,7 @@ pub fn run(way: Option<Way>, timings: &mut Timings) -> Result<()> {
         process::run(documentation.env("RUSTDOCFLAGS", "--deny warnings"))
     })?;
     timings.measured("clippy of the images", || {
-        lint_images(setup::toolchain(way)?)
+        lint_images(setup::toolchain(way, ARM)?)
     })
 }
 
@@ -48,7 +48,7 @@ fn lint_images(way: Way) -> Result<()> {
         Way::Debian => "check",
     };
     for feature in std::iter::once("emulated").chain(BOARDS) {
-        let mut command = way.cargo(subcommand)?;
+        let mut command = way.cargo(ARM, subcommand)?;
         command
             .args(["--package", "hitch-ecu", "--lib", "--bins"])
             .args(["--features", feature]);

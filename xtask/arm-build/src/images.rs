@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 
 use crate::process;
-use crate::toolchain::{TARGET, Way};
+use crate::toolchain::{ARM, Way};
 
 /// Boards, by the features that select them: the ECU's with either part, and one to try the image out.
 pub const BOARDS: [&str; 3] = ["stm32f405", "stm32g474", "nucleo-g474re"];
@@ -55,12 +55,12 @@ pub fn of_board(way: Way, board: &str) -> PathBuf {
 /// Folder of the images.
 #[must_use]
 pub fn folder(way: Way) -> PathBuf {
-    way.target_dir().join(TARGET).join(PROFILE)
+    way.target_dir(ARM).join(ARM.name).join(PROFILE)
 }
 
 /// Builds a part of the ECU's crate, selected by arguments of cargo.
 fn build(way: Way, what: &[&str]) -> Result<()> {
-    let mut command = way.cargo("build")?;
+    let mut command = way.cargo(ARM, "build")?;
     process::run(
         command
             .args(["--package", "hitch-ecu", "--profile", PROFILE])

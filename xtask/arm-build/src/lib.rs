@@ -1,4 +1,4 @@
-//! Builds the images for the ECU: the ARM toolchain, and how cargo is started with it.
+//! Builds the images for the ECU: the compilers for other targets, and how cargo is started with them.
 
 pub mod images;
 pub mod process;

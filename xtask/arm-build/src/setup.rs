@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 
 use crate::process;
-use crate::toolchain::{TARGET, Way};
+use crate::toolchain::{ARM, Target, Way};
 
 /// The emulator executable.
 pub const EMULATOR: &str = "qemu-system-arm";
@@ -20,23 +20,27 @@ const DEBIAN_TOOLCHAIN: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
 
 /// Finds or installs everything.
 pub fn run(way: Option<Way>) -> Result<()> {
-    toolchain(way)?;
+    toolchain(way, ARM)?;
     emulator()?;
     browser()
 }
 
-/// Finds or installs a compiler for ARM: `wanted`, or else the first source that works.
-pub fn toolchain(wanted: Option<Way>) -> Result<Way> {
+/// Finds or installs a compiler for a target: `wanted`, or else the first source that works.
+///
+/// # Errors
+/// If there is none, and none can be installed.
+pub fn toolchain(wanted: Option<Way>, target: Target) -> Result<Way> {
     let ways = wanted.map_or_else(|| vec![Way::Rustup, Way::Debian], |way| vec![way]);
-    let found = ways.iter().copied().find(|way| way.is_there());
-    let way = found.or_else(|| ways.iter().copied().find(|way| install(*way))).with_context(|| {
+    let name = target.name;
+    let found = ways.iter().copied().find(|way| way.is_there(target));
+    let way = found.or_else(|| ways.iter().copied().find(|way| install(*way, target))).with_context(|| {
         format!(
-            "no compiler for {TARGET}; install one of\n  rustup target add {TARGET}\n  apt-get install {}\n\
+            "no compiler for {name}; install one of\n  rustup target add {name}\n  apt-get install {}\n\
              or run this task as root on Debian, which does the latter",
             DEBIAN_TOOLCHAIN.join(" ")
         )
     })?;
-    println!("ARM toolchain: {}", way.description());
+    println!("compiler for {name}: {}", way.description());
     Ok(way)
 }
 
@@ -85,16 +89,19 @@ fn version_of(program: &str) -> Option<String> {
 }
 
 /// Tries to install the packages of `way`; returns the reason for a failure.
-fn install(way: Way) -> bool {
+fn install(way: Way, target: Target) -> bool {
     let result = match way {
-        Way::Rustup => process::run(&mut process::command("rustup", &["target", "add", TARGET])),
+        Way::Rustup => process::run(&mut process::command(
+            "rustup",
+            &["target", "add", target.name],
+        )),
         Way::Debian => install_packages(&DEBIAN_TOOLCHAIN),
     };
     if let Err(error) = result {
         println!("not by {}: {error:#}", way.name());
         return false;
     }
-    way.is_there()
+    way.is_there(target)
 }
 
 fn install_packages(packages: &[&str]) -> Result<()> {

@@ -1,4 +1,4 @@
-//! The compiler for the ECU's processor, from rustup or Debian.
+//! The compilers for the ECU's processor and for WebAssembly, from rustup or Debian.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,8 +8,30 @@ use anyhow::{Context, Error, Result, bail};
 
 use crate::{process, workspace};
 
+/// What is compiled for.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Its name.
+    pub name: &'static str,
+    /// The libraries that Debian's compiler has to build.
+    libraries: &'static str,
+    /// Folder of its builds.
+    folder: &'static str,
+}
+
 /// The ECU's processor: Cortex-M4 with a single-precision floating-point unit.
-pub const TARGET: &str = "thumbv7em-none-eabihf";
+pub const ARM: Target = Target {
+    name: "thumbv7em-none-eabihf",
+    libraries: "core",
+    folder: "arm",
+};
+
+/// A web page.
+pub const WASM: Target = Target {
+    name: "wasm32-unknown-unknown",
+    libraries: "std,panic_abort",
+    folder: "wasm",
+};
 
 /// Location of the sources of `core` in Debian's packages.
 const DEBIAN_SOURCES: &str = "/usr/lib/rustlib/src/rust/library/core/src/lib.rs";
@@ -44,11 +66,11 @@ impl Way {
         }
     }
 
-    /// Whether it is completely installed.
-    pub fn is_there(self) -> bool {
+    /// Whether it is completely installed for a target.
+    pub fn is_there(self, target: Target) -> bool {
         match self {
             Self::Rustup => {
-                sysroot().is_some_and(|root| root.join("lib/rustlib").join(TARGET).is_dir())
+                sysroot().is_some_and(|root| root.join("lib/rustlib").join(target.name).is_dir())
             }
             Self::Debian => {
                 let programs = ["/usr/bin/cargo", "/usr/bin/rustc", DEBIAN_SOURCES];
@@ -60,36 +82,43 @@ impl Way {
     /// Description of this source.
     pub fn description(self) -> &'static str {
         match self {
-            Self::Rustup => "the toolchain in use, with its target thumbv7em-none-eabihf",
-            Self::Debian => "Debian's /usr/bin/cargo and rustc, building `core` from rust-web-src",
+            Self::Rustup => "the toolchain in use, with this target",
+            Self::Debian => {
+                "Debian's /usr/bin/cargo and rustc, building the library from rust-web-src"
+            }
         }
     }
 
     /// Starts a cargo command for the target.
-    pub fn cargo(self, subcommand: &str) -> Result<Command> {
+    ///
+    /// # Errors
+    /// Debian's compiler has no linker.
+    pub fn cargo(self, target: Target, subcommand: &str) -> Result<Command> {
         let mut command = match self {
             Self::Rustup => process::command(workspace::cargo(), &[subcommand]),
-            Self::Debian => debian_cargo(subcommand)?,
+            Self::Debian => debian_cargo(target, subcommand)?,
         };
         command
-            .args(["--locked", "--target", TARGET, "--target-dir"])
-            .arg(self.target_dir());
+            .args(["--locked", "--target", target.name, "--target-dir"])
+            .arg(self.target_dir(target));
         Ok(command)
     }
 
     /// Each source has its own build folder: two compilers in one would rebuild each other's output.
-    pub fn target_dir(self) -> PathBuf {
-        workspace::target().join("arm").join(self.name())
+    pub fn target_dir(self, target: Target) -> PathBuf {
+        workspace::target().join(target.folder).join(self.name())
     }
 }
 
-fn debian_cargo(subcommand: &str) -> Result<Command> {
-    let mut command = process::command("/usr/bin/cargo", &[subcommand, "-Zbuild-std=core"]);
+fn debian_cargo(target: Target, subcommand: &str) -> Result<Command> {
+    let libraries = format!("-Zbuild-std={}", target.libraries);
+    let linker = target.name.replace('-', "_").to_uppercase();
+    let mut command = process::command("/usr/bin/cargo", &[subcommand, &libraries]);
     command
         .env("RUSTC", "/usr/bin/rustc")
-        // Building `core` is unstable, but the sources match this compiler exactly.
+        // Building a library is unstable, but the sources match this compiler exactly.
         .env("RUSTC_BOOTSTRAP", "1")
-        .env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", rust_lld()?)
+        .env(format!("CARGO_TARGET_{linker}_LINKER"), rust_lld()?)
         .env_remove("RUSTUP_TOOLCHAIN")
         // Cargo sets these to the toolchain that runs xtask.
         .env_remove("RUSTDOC")
@@ -108,7 +137,7 @@ fn rust_lld() -> Result<PathBuf> {
     let linker = root.join("lib/rustlib").join(host).join("bin/rust-lld");
     if !linker.exists() {
         bail!(
-            "no linker for ARM at {}: install Rust by rustup, which ships rust-lld there",
+            "no linker at {}: install Rust by rustup, which ships rust-lld there",
             linker.display()
         );
     }

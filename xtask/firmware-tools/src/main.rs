@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use arm_build::setup;
-use arm_build::toolchain::Way;
+use arm_build::toolchain::{ARM, Way};
 
 const USAGE: &str = "\
 usage: firmware-tools arm|sizes|stack [rustup|debian]
@@ -43,9 +43,9 @@ fn run(arguments: &[String]) -> Result<()> {
         _ => bail!("unknown options {options:?}\n{USAGE}"),
     };
     match task.as_str() {
-        "arm" => image::build(setup::toolchain(way)?),
-        "sizes" => image::write_sizes(setup::toolchain(way)?),
-        "stack" => image::show_stacks(setup::toolchain(way)?),
+        "arm" => image::build(setup::toolchain(way, ARM)?),
+        "sizes" => image::write_sizes(setup::toolchain(way, ARM)?),
+        "stack" => image::show_stacks(setup::toolchain(way, ARM)?),
         "a2l" => a2l::write(),
         "coverage" => coverage::run(),
         unknown => bail!("unknown task `{unknown}`\n{USAGE}"),

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::thread;
 
 use anyhow::{Context, Result, bail};
-use arm_build::toolchain::Way;
+use arm_build::toolchain::{ARM, Way};
 use arm_build::{images, process, setup};
 
 use crate::timings::{self, Timings};
@@ -39,7 +39,7 @@ impl Tests {
     /// If something is missing and can't be installed, or does not compile.
     pub fn build(way: Option<Way>, timings: &mut Timings) -> Result<Self> {
         let way = timings.measured("set-up of toolchain, emulator and browser", || {
-            let way = setup::toolchain(way)?;
+            let way = setup::toolchain(way, ARM)?;
             setup::emulator()?;
             setup::browser()?;
             Ok(way)
