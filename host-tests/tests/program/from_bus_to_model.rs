@@ -55,7 +55,9 @@ fn explained(shift_a: f64, measured_period_ms: u32) -> serde_json::Value {
     fs::write(folder.join("tractor.log"), log(shift_a, measured_period_ms)).unwrap();
     let output = run(
         dir.path(),
-        &["explain", "c", "--model", "dynamic", "--json", "-"],
+        &[
+            "explain", "c", "--model", "dynamic", "--budget", "600", "--json", "-",
+        ],
     );
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
