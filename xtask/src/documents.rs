@@ -104,7 +104,7 @@ fn unmatched<'a>(required: &'a str, sources: impl Iterator<Item = &'a str>) -> V
     untested.chain(unknown).collect()
 }
 
-/// Rows of the table of places whose file does not exist, or lacks the name. `read` gives the text of a file.
+/// Faults of the table of places: a file that does not exist, or does not contain the name. `read` returns its text.
 fn misplaced(page: &str, read: impl Fn(&str) -> Option<String>) -> Vec<String> {
     let table = page
         .split("\n## ")

@@ -1,6 +1,6 @@
 //! The functions that the page calls: a text of JSON in, a text of JSON out.
 //!
-//! The page asks for a place with [`request_place`], writes a request there, calls [`answer`], and reads the answer from
+//! The page gets an address from [`request_place`], writes a request there, calls [`answer`], and reads the answer from
 //! [`answer_place`]. All three share one buffer, so that a request or an answer is valid until the next call.
 #![allow(
     unsafe_code,

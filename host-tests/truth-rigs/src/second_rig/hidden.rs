@@ -11,7 +11,7 @@ use super::test_stand::Family;
 pub enum Fidelity {
     /// The textbook's simplest form.
     Faithful,
-    /// With structure that the simplest form lacks.
+    /// With more detail than the simplest form.
     Structured,
 }
 

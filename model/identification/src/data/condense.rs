@@ -21,7 +21,7 @@ const AFTER_A_JUMP_S: f64 = 0.12;
 /// Change of a current's slope between two samples that counts as a jump, in sigmas of its noise.
 const JUMP_SIGMAS: f64 = 3.0;
 
-/// The stretches of a run whose currents have this noise, one sigma, A. `alike` tells whether two samples have the same
+/// The stretches of a run. `noise` is one sigma of its currents, A; `alike` is true for two samples with the same
 /// measured channels.
 pub(crate) fn condensed(
     drive: &Drive,

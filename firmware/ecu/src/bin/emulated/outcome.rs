@@ -27,7 +27,7 @@ impl From<HostFileError> for Failure {
 pub struct Done {
     /// Steps or milliseconds.
     pub ticks: u32,
-    /// The longest of them, in ticks of the stopwatch; those below are left out if they are told apart.
+    /// The longest of them, in ticks of the stopwatch, apart from those that a field below counts.
     pub longest: u32,
     /// The longest of those with a coil on.
     pub longest_working: u32,

@@ -1,6 +1,6 @@
 //! A word of what the image prints.
 
-/// What can be said.
+/// A word that can be printed.
 pub enum Word<'a> {
     /// Text.
     Text(&'a str),
