@@ -52,7 +52,6 @@ export function openOverlay(state, fail) {
   byId("overlay").hidden = state.runs.length < 2;
   byId("overlay-all").onclick = () => tick(true).catch(fail);
   byId("overlay-none").onclick = () => tick(false).catch(fail);
-  byId("overlay").ontoggle = () => byId("run").toggleAttribute("data-overlay", /** @type {HTMLDetailsElement} */ (byId("overlay")).open);
   tick(false).catch(fail);
 }
 
