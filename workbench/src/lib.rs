@@ -1,40 +1,26 @@
 //! Library of the program `hitch`.
+//!
+//! A command ([`commands`], named in [`cli`]) reads a campaign ([`import`], [`arguments`]), has it compared ([`comparison::Comparison`]),
+//! explained ([`explanation::Found`]) or driven ([`closed_loop::LoopRun`], [`field_loop`], [`ecu`]), and shows the result as text and
+//! JSON ([`output::Document`]), as a file ([`report`]) or as a page ([`serve`]).
 #![forbid(unsafe_code)]
 
-pub mod archive;
-pub mod base_fit;
-pub mod baseline_arg;
+pub mod arguments;
+pub mod base_model;
 pub mod cli;
 pub mod closed_loop;
 pub mod commands;
 pub mod comparison;
-pub mod data_sheet;
-pub mod demonstration;
 pub mod ecu;
-pub mod effect_arg;
 pub mod error;
 pub mod explanation;
 pub mod field_loop;
 pub mod fmu_export;
-pub mod heat_table;
 pub mod import;
-pub mod input_stream;
-pub mod interruption;
-pub mod model_arg;
-pub mod next_command;
 pub mod output;
-pub mod outputs;
-pub mod progress;
-pub mod rebuild;
 pub mod report;
-pub mod run_block;
-pub mod search_args;
 pub mod serve;
-pub mod slcan_server;
-pub mod status_line;
 pub mod text;
-pub mod tolerance_args;
 pub mod tuning;
 pub mod web;
-pub mod words;
 pub mod xcp_tool;

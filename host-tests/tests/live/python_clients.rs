@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hitch_campaign::{Campaign, Run};
 use hitch_plant::Channel;
+use hitch_workbench::ecu::slcan_server::SlcanServer;
 use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
-use hitch_workbench::slcan_server::SlcanServer;
 use host_tests::live_ecu::{self, Operator};
 use host_tests::program::hitch;
 use host_tests::python::{installed, run, scripts};

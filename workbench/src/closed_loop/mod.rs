@@ -6,6 +6,7 @@ mod missed;
 mod moves;
 mod pressure_swing;
 mod rate;
+pub mod rebuild;
 mod scenario;
 pub mod show;
 pub mod show_variants;

@@ -13,14 +13,14 @@ use hitch_identification::selection::evidence::SIGNIFICANT;
 use hitch_identification::selection::leave_one_out::{LeaveOneOut, leave_one_out};
 use hitch_plant::{Effect, Model, full_name};
 
-use crate::baseline_arg::BaselineArg;
-use crate::effect_arg::find;
+use crate::arguments::baseline::BaselineArg;
+use crate::arguments::effect::find;
+use crate::arguments::model::ModelArg;
 use crate::error::Error;
 use crate::explanation::{Base, Posed, UNSUITABLE_BASE, parameters, rebuilt};
-use crate::model_arg::ModelArg;
 use crate::output;
-use crate::outputs::{Outputs, campaign_files};
-use crate::progress::Progress;
+use crate::output::progress::Progress;
+use crate::output::targets::{Outputs, campaign_files};
 use crate::text::{indented, wrapped};
 
 /// Arguments of `hitch add`.

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use hitch_identification::search::options::{Accuracy, Options};
 
+use crate::arguments::model::ModelArg;
+use crate::arguments::search::SearchArgs;
+use crate::arguments::tolerances::ToleranceArgs;
 use crate::error::Error;
 use crate::explanation::{Base, Found, Posed, saving};
-use crate::model_arg::ModelArg;
+use crate::output::targets::{Outputs, campaign_files};
 use crate::output::{self, JsonArg};
-use crate::outputs::{Outputs, campaign_files};
 use crate::report::explanation_page;
-use crate::search_args::SearchArgs;
 use crate::text::{shell_word, wrapped};
-use crate::tolerance_args::ToleranceArgs;
 
 /// Arguments of `hitch adopt`.
 #[derive(Debug, clap::Args)]

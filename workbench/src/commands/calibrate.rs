@@ -9,7 +9,7 @@ use hitch_quantities::calibration::valve_table::ValveTable;
 use super::loop_::read_files;
 use crate::error::Error;
 use crate::output;
-use crate::outputs::Outputs;
+use crate::output::targets::Outputs;
 use crate::text::indented;
 use hitch_closed_loop::calibrate::{calibrate, carried};
 

@@ -10,15 +10,15 @@ use hitch_plant::Model;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::arguments::model::ModelArg;
+use crate::arguments::search::SearchArgs;
 use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
 use crate::explanation::{Explanation, Found, Since};
-use crate::model_arg::ModelArg;
+use crate::output::progress::Progress;
+use crate::output::targets::{Outputs, campaign_files};
 use crate::output::{self, JsonArg};
-use crate::outputs::{Outputs, campaign_files};
-use crate::progress::Progress;
 use crate::report::changes_page;
-use crate::search_args::SearchArgs;
 use crate::text::colour::by_sigma;
 use crate::text::wrapped;
 

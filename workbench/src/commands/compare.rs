@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 use hitch_campaign::Campaign;
 use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 
-use crate::baseline_arg::BaselineArg;
+use crate::arguments::baseline::BaselineArg;
+use crate::arguments::model::ModelArg;
+use crate::arguments::next_command::{self, Standing};
 use crate::commands::fleet::FleetArgs;
 use crate::comparison::Comparison;
 use crate::error::Error;
-use crate::model_arg::ModelArg;
-use crate::next_command::{self, Standing};
+use crate::output::progress::Progress;
+use crate::output::targets::{Outputs, campaign_files};
 use crate::output::{self, JsonArg};
-use crate::outputs::{Outputs, campaign_files};
-use crate::progress::Progress;
 use crate::report::comparison_page;
 
 /// Arguments of `hitch compare`.

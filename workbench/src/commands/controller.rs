@@ -1,4 +1,5 @@
 //! `hitch controller`: the firmware's controller on standard input and output, for an external plant.
+mod input_stream;
 
 use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
@@ -10,9 +11,9 @@ use hitch_input::input_error::{InputError, Position};
 use hitch_quantities::{Outputs, Reason, Trouble};
 
 use super::loop_::calibration;
+use crate::commands::controller::input_stream::{Columns, LineError};
 use crate::error::Error;
-use crate::input_stream::{Columns, LineError};
-use crate::{output, outputs};
+use crate::output::{self, targets};
 
 /// Header of the output.
 const HEADER: &str = "lift_current_a,lower_current_a,state";
@@ -58,7 +59,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         "standard output has the answers",
     )?;
     let inputs: Vec<PathBuf> = args.calibration.iter().cloned().collect();
-    outputs::Outputs::check([args.out.as_deref()], &inputs)?;
+    targets::Outputs::check([args.out.as_deref()], &inputs)?;
     let controller = Controller::new(calibration(args.calibration.as_ref())?);
     serve(
         controller,

@@ -6,14 +6,14 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::diagnosis::diagnose;
 use hitch_identification::explanation::explain::fit_base;
 
-use crate::baseline_arg::BaselineArg;
+use crate::arguments::baseline::BaselineArg;
+use crate::arguments::model::ModelArg;
+use crate::arguments::next_command::{self, Standing};
 use crate::error::Error;
 use crate::explanation::{Base, Diagnosis, Head, Posed};
-use crate::model_arg::ModelArg;
-use crate::next_command::{self, Standing};
+use crate::output::progress::Progress;
+use crate::output::targets::{Outputs, campaign_files};
 use crate::output::{self, JsonArg};
-use crate::outputs::{Outputs, campaign_files};
-use crate::progress::Progress;
 use crate::report::diagnosis_page;
 
 /// Arguments of `hitch diagnose`.

@@ -1,4 +1,5 @@
 //! `hitch ecu`: runs the ECU on the bench, live.
+mod status_line;
 
 use std::io::BufRead;
 use std::net::SocketAddr;
@@ -12,14 +13,14 @@ use hitch_plant::Model;
 use hitch_protocols::can::Frame;
 
 use super::loop_::{calibration, load_kg};
+use crate::commands::ecu::status_line::StatusLine;
+use crate::ecu::slcan_server::SlcanServer;
 use crate::ecu::{
     Bench, Bus, CutFlash, EcuMachine, FLASH_BYTES, MachineError, Order, PICK_UP_MS, Pace, Runner,
     delivered, reach_deg,
 };
 use crate::error::Error;
 use crate::output::{check_writable, no_stdout, write_file};
-use crate::slcan_server::SlcanServer;
-use crate::status_line::StatusLine;
 use crate::xcp_tool::read_key;
 
 /// Arguments of `hitch ecu`.

@@ -7,11 +7,11 @@ use std::fmt::Write as _;
 pub use catalogue::Catalogue;
 use hitch_plant::{Effect, Model, full_name};
 
-use crate::effect_arg::find;
+use crate::arguments::effect::find;
+use crate::arguments::model::ModelArg;
 use crate::error::Error;
-use crate::model_arg::ModelArg;
+use crate::output::targets::Outputs;
 use crate::output::{self, JsonArg};
-use crate::outputs::Outputs;
 use crate::text::{Table, indented, wrapped};
 
 /// Arguments of `hitch effects`.

@@ -2,17 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::baseline_arg::BaselineArg;
+use crate::arguments::baseline::BaselineArg;
+use crate::arguments::model::ModelArg;
+use crate::arguments::next_command;
+use crate::arguments::search::SearchArgs;
 use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
 use crate::explanation::{Base, Found, Posed, saving};
-use crate::model_arg::ModelArg;
-use crate::next_command;
+use crate::output::progress::Progress;
+use crate::output::targets::{Outputs, campaign_files};
 use crate::output::{self, JsonArg};
-use crate::outputs::{Outputs, campaign_files};
-use crate::progress::Progress;
 use crate::report::explanation_page;
-use crate::search_args::SearchArgs;
 
 /// Arguments of `hitch explain`.
 #[derive(Debug, clap::Args)]

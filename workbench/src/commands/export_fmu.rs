@@ -10,8 +10,8 @@ use hitch_input::source_file::SourceFile;
 
 use super::loop_::{calibration, read_files};
 use crate::error::Error;
-use crate::outputs::Outputs;
-use crate::progress::Progress;
+use crate::output::progress::Progress;
+use crate::output::targets::Outputs;
 use crate::{fmu_export, output};
 
 /// Arguments of `hitch export-fmu`.

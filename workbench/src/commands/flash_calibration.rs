@@ -5,7 +5,7 @@ use hitch_controller_host::calibration_file;
 
 use crate::error::Error;
 use crate::output;
-use crate::progress::Progress;
+use crate::output::progress::Progress;
 use crate::xcp_tool::{BusAddress, read_key, write_to};
 
 /// Arguments of `hitch flash-calibration`.

@@ -11,8 +11,8 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::output::is_stdout;
-use crate::outputs::{Outputs, campaign_files};
-use crate::progress::Progress;
+use crate::output::progress::Progress;
+use crate::output::targets::{Outputs, campaign_files};
 
 pub use line::{Line, Success};
 use lines_file::LinesFile;

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use hitch_campaign::{Bench, Run};
 
 use super::loop_::load_kg;
+use crate::arguments::model::ModelArg;
 use crate::error::Error;
 use crate::import::files::columns;
 use crate::import::manifest::{Log, campaign, path_from};
 use crate::import::{Columns, Files, dialogue, load_in_name};
-use crate::model_arg::ModelArg;
 use crate::output;
 use crate::text::{shell_word, wrapped};
 

@@ -20,8 +20,8 @@ use crate::commands::loop_scenario::{self, LoopScenario};
 use crate::error::Error;
 use crate::field_loop::scenario::{self, FieldFigure, FieldRun, FieldScenario};
 use crate::output::JsonArg;
-use crate::outputs::Outputs;
-use crate::progress::Progress;
+use crate::output::progress::Progress;
+use crate::output::targets::Outputs;
 use crate::report::{field_page, loop_page, variants_page};
 use crate::{closed_loop, field_loop, output};
 

@@ -7,16 +7,17 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::search::options::Options;
 use hitch_plant::Model;
 
+use crate::arguments::demonstration;
 use crate::closed_loop::Scenario;
+use crate::closed_loop::rebuild::Rebuild;
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::explanation::Found;
-use crate::outputs::Outputs;
-use crate::progress::Progress;
-use crate::rebuild::Rebuild;
+use crate::output;
+use crate::output::progress::Progress;
+use crate::output::targets::Outputs;
 use crate::report::main_page;
 use crate::text::{colour, indented, wrapped};
-use crate::{demonstration, output};
 
 /// Number of worst cells that are listed.
 const NAMED_CELLS: usize = 3;

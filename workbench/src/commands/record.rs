@@ -7,9 +7,9 @@ use hitch_campaign::{Bench, Run};
 
 use super::loop_::{load_kg, temperature_c};
 use crate::error::Error;
+use crate::import::run_block::RunBlock;
 use crate::output;
-use crate::progress::Progress;
-use crate::run_block::RunBlock;
+use crate::output::progress::Progress;
 use crate::text::wrapped;
 use crate::xcp_tool::{
     BusAddress, CHANNELS, PERIOD_MS, Recording, Row, connect, record, tool_error,

@@ -3,7 +3,7 @@
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 
-use crate::base_fit::ShownBaseFit;
+use crate::base_model::fit::ShownBaseFit;
 use crate::commands::fleet::Line;
 use crate::commands::{changes, effects, loop_, tune};
 use crate::comparison::Comparison;

@@ -1,10 +1,10 @@
 //! `hitch serve`: the interactive page, local only.
 use std::path::{Path, PathBuf};
 
-use crate::baseline_arg::BaselineArg;
+use crate::arguments::baseline::BaselineArg;
+use crate::arguments::model::ModelArg;
 use crate::ecu::Runner;
 use crate::error::Error;
-use crate::model_arg::ModelArg;
 use crate::serve::{self, LoopSource, Source};
 use crate::xcp_tool::BusAddress;
 

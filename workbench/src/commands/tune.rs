@@ -15,9 +15,9 @@ use crate::closed_loop::{
 use crate::commands::loop_::{changed, load_kg, read_files};
 use crate::commands::tune_scenario::TuneScenario;
 use crate::error::Error;
+use crate::output::progress::Progress;
+use crate::output::targets::Outputs;
 use crate::output::{self, JsonArg};
-use crate::outputs::Outputs;
-use crate::progress::Progress;
 use crate::report::tuning_page;
 use crate::text::Table;
 use crate::tuning::figures::{self, Figure};

@@ -5,9 +5,9 @@ use std::fmt;
 use hitch_plant::Channel;
 
 use super::{Cell, Comparison, Grouping};
-use crate::heat_table::{HeatTable, Shade};
 use crate::text::colour::by_sigma;
 use crate::text::{Table, indented, wrapped};
+use crate::web::heat_table::{HeatTable, Shade};
 
 /// Number of worst cells that are listed.
 const NAMED_CELLS: usize = 5;

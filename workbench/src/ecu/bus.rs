@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use hitch_protocols::can::Frame;
 
-use crate::slcan_server::SlcanServer;
+use crate::ecu::slcan_server::SlcanServer;
 
 /// Maximum number of eight-byte frames in a millisecond at 250 kbit/s.
 const MOST_FRAMES: usize = 2;

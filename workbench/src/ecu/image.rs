@@ -9,7 +9,7 @@ use std::thread;
 use std::time::Duration;
 
 use crate::error::Error;
-use crate::progress::Progress;
+use crate::output::progress::Progress;
 
 /// Environment variable with the path of the image.
 pub const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";

@@ -10,6 +10,7 @@ mod machine;
 mod operator;
 mod pace;
 mod runner;
+pub mod slcan_server;
 
 pub use bench::{Bench, Moment};
 pub use bus::Bus;

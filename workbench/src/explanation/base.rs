@@ -6,10 +6,10 @@ use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
 use hitch_plant::Model;
 
-use crate::baseline_arg::BaselineArg;
+use crate::arguments::baseline::BaselineArg;
+use crate::arguments::model::ModelArg;
 use crate::error::Error;
 use crate::explanation::Since;
-use crate::model_arg::ModelArg;
 
 /// What campaigns are compared with.
 pub enum Base<'a> {

@@ -7,7 +7,7 @@ use hitch_identification::explanation::explain::Verdict;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::base_fit::{ShownConstant, ShownPoint};
+use crate::base_model::fit::{ShownConstant, ShownPoint};
 use crate::text::{Table, indented, wrapped};
 
 /// Constants that differ from the declared ones, within the tolerances of data sheets.

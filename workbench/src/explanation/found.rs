@@ -12,7 +12,7 @@ use hitch_plant::{AddedEffect, Effect, Model, full_name, is_same};
 
 use super::show::significant;
 use super::{Explanation, rebuilt};
-use crate::progress::Progress;
+use crate::output::progress::Progress;
 
 /// An explanation with its inputs and display form.
 #[derive(Debug, Clone)]

@@ -10,8 +10,8 @@ use super::{
     Suggested, UNSUITABLE_BASE, Unexplained,
 };
 use crate::text::colour::{self, by_sigma};
+use crate::text::words;
 use crate::text::{Table, indented, known, wrapped};
-use crate::words;
 
 /// Indentation of the details of a step, characters.
 const DETAIL: usize = 5;

@@ -5,8 +5,8 @@ use hitch_fmu::kind::Kind;
 use hitch_input::source_file::SourceFile;
 
 use super::library::platform;
-use crate::archive::zipped;
 use crate::error::Error;
+use crate::output::archive::zipped;
 
 /// The bytes of a unit with the content of `file` and the `library`.
 ///

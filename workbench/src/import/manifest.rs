@@ -9,7 +9,7 @@ use hitch_plant::Linkage;
 use super::cuts::cuts;
 use super::mapping::Mapping;
 use crate::error::Error;
-use crate::run_block::RunBlock;
+use crate::import::run_block::RunBlock;
 
 /// A log of a campaign.
 #[derive(Debug, Clone)]

@@ -10,6 +10,7 @@ pub mod load;
 pub mod manifest;
 mod mapping;
 pub mod note;
+pub mod run_block;
 #[cfg(test)]
 mod tests;
 pub mod times;

@@ -18,7 +18,7 @@ use super::staircase::staircase;
 use super::{page, staircase};
 use crate::comparison::Evaluated;
 use crate::explanation::{Candidate, Diagnosis, UNSUITABLE_BASE};
-use crate::words;
+use crate::text::words;
 
 /// Number of candidates that are shown as bars, and in the unfolded table.
 const BARS: usize = 8;

@@ -11,11 +11,11 @@ use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
-use crate::base_fit::ShownConstant;
+use crate::base_model::fit::ShownConstant;
 use crate::comparison::Evaluated;
 use crate::explanation::{ChannelFigures, Corrected, Explanation, Found, Head, Step};
 use crate::text::known;
-use crate::words;
+use crate::text::words;
 
 /// The report as one HTML document.
 pub fn page(found: &Found) -> String {

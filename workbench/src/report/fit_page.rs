@@ -16,7 +16,7 @@ use super::error_map::error_map;
 use super::page;
 use super::run_views::run_views;
 use super::runs::runs;
-use crate::base_fit::{ShownBaseFit, ShownConstant, ShownPoint, digits};
+use crate::base_model::fit::{ShownBaseFit, ShownConstant, ShownPoint, digits};
 use crate::comparison::Evaluated;
 
 /// A fitted base model.

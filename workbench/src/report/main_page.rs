@@ -2,8 +2,8 @@
 use maud::html;
 
 use super::{explanation_page, page, rebuild_page};
+use crate::closed_loop::rebuild::Rebuild;
 use crate::explanation::Found;
-use crate::rebuild::Rebuild;
 
 /// The report as one HTML document.
 pub fn page(found: &Found, rebuild: &Rebuild) -> String {

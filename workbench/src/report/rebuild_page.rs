@@ -7,7 +7,7 @@ use super::chart::Stroke;
 use super::drawn::{Drawn, drawn};
 use super::page;
 use super::same_move::compared;
-use crate::rebuild::Rebuild;
+use crate::closed_loop::rebuild::Rebuild;
 use crate::text::known;
 
 /// Conversion from microlitres per second to litres per minute.

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use super::refusal::Refusal;
 use super::request::{Answer, Known, Of, blocking, find, lock};
 use super::sessions::{Sessions, Shared};
-use crate::data_sheet::{self, QUESTIONS};
+use crate::base_model::data_sheet::{self, QUESTIONS};
 use crate::error::Error;
 
 /// Maximum size of a model file, bytes.

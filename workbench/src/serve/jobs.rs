@@ -13,7 +13,7 @@ use super::request::lock;
 use super::session::Job;
 use super::sessions::Shared;
 use super::tasks::{Outcome, Ready, Task};
-use crate::search_args::limit;
+use crate::arguments::search::limit;
 
 /// Panic payload that unwinds a cancelled computation.
 struct Cancelled;

@@ -61,7 +61,7 @@ mod tests {
     use hitch_identification::estimate::Shared;
 
     use super::*;
-    use crate::effect_arg::find;
+    use crate::arguments::effect::find;
 
     fn estimate(effects: Vec<AddedEffect>) -> Estimate {
         Estimate {

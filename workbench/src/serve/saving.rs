@@ -14,10 +14,10 @@ use super::request::{Known, Of, blocking, find, lock};
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
 use super::views;
-use crate::archive::zipped;
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::explanation::{self, Found};
+use crate::output::archive::zipped;
 use crate::report::{comparison_page, explanation_page};
 use hitch_closed_loop::driven::calibration;
 

@@ -8,9 +8,9 @@ use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
 use hitch_plant::Model;
 
-use crate::base_fit::ShownBaseFit;
+use crate::arguments::demonstration;
+use crate::base_model::fit::ShownBaseFit;
 use crate::comparison::Evaluated;
-use crate::demonstration;
 use crate::error::Error;
 use crate::explanation::Since;
 

@@ -19,9 +19,9 @@ use super::second::Second;
 use super::session::{Explained, Ranking, Session, Step};
 use super::source::Subject;
 use super::tuned::TunedFor;
-use crate::effect_arg::find;
+use crate::arguments::effect::find;
+use crate::arguments::search::BUDGET_S;
 use crate::error::Error;
-use crate::search_args::BUDGET_S;
 
 /// Times of an explanation, s.
 const BUDGETS_S: RangeInclusive<f64> = 1.0..=86_400.0;

@@ -17,7 +17,7 @@ use super::session::{Ranking, Session, Step};
 use super::source::Subject;
 use crate::comparison::{Comparison, Evaluated, Grouping};
 use crate::report::run_views::conditions;
-use crate::words;
+use crate::text::words;
 
 pub use effects::tried;
 

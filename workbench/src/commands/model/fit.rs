@@ -6,14 +6,14 @@ use hitch_campaign::Campaign;
 use hitch_identification::base::fit_base_model;
 use hitch_identification::data::experiment::Experiment;
 
-use crate::base_fit::ShownBaseFit;
+use crate::arguments::model::ModelArg;
+use crate::arguments::tolerances::ToleranceArgs;
+use crate::base_model::fit::ShownBaseFit;
 use crate::error::Error;
-use crate::model_arg::ModelArg;
+use crate::output::progress::Progress;
+use crate::output::targets::{Outputs, campaign_files};
 use crate::output::{self, JsonArg};
-use crate::outputs::{Outputs, campaign_files};
-use crate::progress::Progress;
 use crate::report::fit_page;
-use crate::tolerance_args::ToleranceArgs;
 
 /// Arguments of `hitch model fit`.
 #[derive(Debug, clap::Args)]

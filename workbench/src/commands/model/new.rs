@@ -8,10 +8,10 @@ use hitch_model_file::{Template, Valve};
 use hitch_plant::ValveCurve;
 
 use super::{flow_curve, linkage_table};
-use crate::data_sheet::{self, QUESTIONS};
+use crate::base_model::data_sheet::{self, QUESTIONS};
 use crate::error::Error;
 use crate::output;
-use crate::outputs::Outputs;
+use crate::output::targets::Outputs;
 use crate::text::shell_word;
 
 /// Arguments of `hitch model new`.

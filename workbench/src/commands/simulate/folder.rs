@@ -9,8 +9,8 @@ use hitch_model_file::quoted;
 use hitch_plant::Channel;
 
 use crate::error::Error;
+use crate::import::run_block::RunBlock;
 use crate::output;
-use crate::run_block::RunBlock;
 
 /// A new campaign, with the runs so far.
 pub struct Folder {

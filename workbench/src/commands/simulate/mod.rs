@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use hitch_campaign::{Bench, Campaign, Run};
 use hitch_plant::{Channel, Model};
 
+use crate::arguments::model::ModelArg;
 use crate::error::Error;
-use crate::model_arg::ModelArg;
 use crate::output;
-use crate::outputs::Outputs;
-use crate::progress::Progress;
+use crate::output::progress::Progress;
+use crate::output::targets::Outputs;
 
 use folder::Folder;
 use trace::simulated;

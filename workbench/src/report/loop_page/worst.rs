@@ -3,8 +3,8 @@ use maud::{Markup, html};
 
 use super::occurring;
 use crate::closed_loop::MoveResult;
-use crate::heat_table::{HeatTable, Shade};
 use crate::report::page::folded;
+use crate::web::heat_table::{HeatTable, Shade};
 
 /// A figure of a move with its colour scale.
 struct Figure {

@@ -16,7 +16,7 @@ use hitch_identification::search::single_effects::try_effects;
 use hitch_identification::selection::hold_out::held_out;
 use hitch_plant::{AddedEffect, Effect, Model, full_name};
 
-use crate::base_fit::ShownBaseFit;
+use crate::base_model::fit::ShownBaseFit;
 use crate::comparison::Evaluated;
 use crate::explanation;
 use crate::serve::jobs::Reporter;

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::explanation::{Candidate, Corrected, Step, explained as share_explained, parameters};
 use crate::serve::session::{Explained, Ranking, Session};
-use crate::words;
+use crate::text::words;
 
 /// Texts of an effect.
 pub fn described(effect: &dyn Effect) -> Value {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use hitch_identification::constants::tolerances::names;
 use serde_json::{Value, json};
 
-use crate::base_fit::ShownConstant;
+use crate::base_model::fit::ShownConstant;
 use crate::serve::session::Session;
 use crate::tuning::figures;
 

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::baseline_arg::BaselineArg;
-use crate::model_arg::ModelArg;
+use crate::arguments::baseline::BaselineArg;
+use crate::arguments::model::ModelArg;
 use crate::text::{shell_word, wrapped};
 
 /// File names of the proposed commands.

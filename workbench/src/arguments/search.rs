@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use hitch_identification::data::limit::Limit;
 use hitch_identification::search::options::Options;
 
-use crate::interruption::requested;
+use crate::arguments::interruption::requested;
 
 /// Time after which a search ends, s, unless another one is given.
 pub const BUDGET_S: f64 = 60.0;

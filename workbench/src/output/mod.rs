@@ -1,5 +1,8 @@
 //! Output of the program: standard output, JSON documents, and files that are written atomically.
+pub mod archive;
 mod document;
+pub mod progress;
+pub mod targets;
 
 use std::fs;
 use std::io::{self, Write};

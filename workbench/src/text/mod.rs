@@ -4,6 +4,7 @@ use std::path::Path;
 pub mod colour;
 mod table;
 mod width;
+pub mod words;
 
 pub use table::Table;
 pub use width::{indented, visible, width, wrapped};

@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn every_term_stands_in_the_glossary() {
-        let glossary = include_str!("../../docs/GLOSSARY.md").to_lowercase();
+        let glossary = include_str!("../../../docs/GLOSSARY.md").to_lowercase();
         for word in ALL {
             assert!(glossary.contains(word.term), "{}", word.term);
         }

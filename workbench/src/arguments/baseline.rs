@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::outputs::campaign_files;
+use crate::output::targets::campaign_files;
 use crate::text::shell_word;
 
 /// Selects the baseline of a command.

@@ -1,0 +1,10 @@
+//! What several commands take from the command line, and the command that continues the work.
+
+pub mod baseline;
+pub mod demonstration;
+pub mod effect;
+mod interruption;
+pub mod model;
+pub mod next_command;
+pub mod search;
+pub mod tolerances;
