@@ -9,12 +9,12 @@ use percent_encoding::percent_decode_str;
 /// # Errors
 /// If it is no file URI of this machine; what is wrong and how to correct it.
 pub fn path(uri: &str) -> Result<PathBuf, String> {
-    const MEND: &str = "give a URI like file:///tmp/unit/resources";
+    const HINT: &str = "give a URI like file:///tmp/unit/resources";
     let scheme = uri
         .get(..5)
         .filter(|scheme| scheme.eq_ignore_ascii_case("file:"));
     let Some(rest) = scheme.and_then(|_| uri.get(5..)) else {
-        return Err(format!("{uri:?} is not a file URI; {MEND}"));
+        return Err(format!("{uri:?} is not a file URI; {HINT}"));
     };
     let path = match rest.strip_prefix("//") {
         Some(rest) => rest.strip_prefix("localhost").unwrap_or(rest),
@@ -22,12 +22,12 @@ pub fn path(uri: &str) -> Result<PathBuf, String> {
     };
     if !path.starts_with('/') {
         return Err(format!(
-            "{uri:?} names another machine or no absolute path; {MEND}"
+            "{uri:?} names another machine or no absolute path; {HINT}"
         ));
     }
     let path = percent_decode_str(path)
         .decode_utf8()
-        .map_err(|_| format!("{uri:?} is not UTF-8; {MEND}"))?;
+        .map_err(|_| format!("{uri:?} is not UTF-8; {HINT}"))?;
     // On Windows the drive follows the slash.
     let path = if cfg!(windows) {
         path.trim_start_matches('/')

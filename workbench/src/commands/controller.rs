@@ -87,7 +87,7 @@ pub fn serve(
             LineError {
                 column: 1,
                 what: "there is no header".to_owned(),
-                hint: Columns::MEND.to_owned(),
+                hint: Columns::HINT.to_owned(),
             },
         ));
     }

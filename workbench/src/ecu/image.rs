@@ -15,7 +15,7 @@ use crate::output::progress::Progress;
 pub const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
 
 /// Suggested correction if there is no image.
-const MEND: &str = "run hitch from a clone of its sources, which builds the image; or name one with --image; \
+const HINT: &str = "run hitch from a clone of its sources, which builds the image; or name one with --image; \
     or take --host, which runs the same application without an emulator";
 
 /// The image: `given`, else the one named by the environment, else built from the sources.
@@ -54,7 +54,7 @@ fn build() -> Result<PathBuf, Error> {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     if !sources.join("xtask").is_dir() {
         return Err(Error::Usage(format!(
-            "there is no image of the ECU: {MEND}"
+            "there is no image of the ECU: {HINT}"
         )));
     }
     let progress = Progress::start("building the ECU's image");
@@ -65,7 +65,7 @@ fn build() -> Result<PathBuf, Error> {
         .current_dir(&sources)
         .stdin(Stdio::null())
         .output()
-        .map_err(|error| Error::Usage(format!("cargo can't be started ({error}): {MEND}")))?;
+        .map_err(|error| Error::Usage(format!("cargo can't be started ({error}): {HINT}")))?;
     drop((progress, patience));
     let text = String::from_utf8_lossy(&built.stdout);
     match (built.status.success(), text.trim_end().lines().last()) {
@@ -74,7 +74,7 @@ fn build() -> Result<PathBuf, Error> {
             let reason = String::from_utf8_lossy(&built.stderr);
             let reason = reason.trim_end().lines().last().unwrap_or("no message");
             Err(Error::Usage(format!(
-                "`cargo run --package arm-build` failed ({reason}): {MEND}"
+                "`cargo run --package arm-build` failed ({reason}): {HINT}"
             )))
         }
     }

@@ -16,7 +16,7 @@ use crate::time_base::unit_size_s;
 
 /// Most columns of a matrix: larger ones are no logs.
 const MOST_COLUMNS: usize = 64;
-const MEND: &str = "save it again: save('log.mat', 't', 'heben', ..., '-v7')";
+const HINT: &str = "save it again: save('log.mat', 't', 'heben', ..., '-v7')";
 
 /// The fields of a struct.
 type Fields = [(String, Value)];
@@ -26,7 +26,7 @@ type Fields = [(String, Value)];
 /// # Errors
 /// The file is broken, or contains no vectors.
 pub fn read(bytes: &[u8]) -> Result<Vec<NumberColumn>, Fault> {
-    let variables = variables(bytes).map_err(|what| (what, MEND))?;
+    let variables = variables(bytes).map_err(|what| (what, HINT))?;
     let mut columns = Vec::new();
     for (name, value) in &variables {
         add(name, value, &mut columns);
@@ -39,7 +39,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<NumberColumn>, Fault> {
             "contains timeseries, tables or other objects, which only MATLAB can read".to_owned(),
             "save structs: heben = struct('Time', ts.Time, 'Data', ts.Data), or table2struct(t, 'ToScalar', true)",
         )),
-        true => Err(("contains no vectors of numbers".to_owned(), MEND)),
+        true => Err(("contains no vectors of numbers".to_owned(), HINT)),
         false => Ok(columns),
     }
 }

@@ -16,7 +16,7 @@ use parquet::schema::types::ColumnDescriptor;
 use super::number_column::{Fault, MOST_NUMBERS, NumberColumn};
 use crate::csv_log::text_rows::HeaderCell;
 
-const MEND: &str = "write it again, with the compression snappy or gzip or without one, or as CSV: pandas.read_parquet(...).to_csv(...)";
+const HINT: &str = "write it again, with the compression snappy or gzip or without one, or as CSV: pandas.read_parquet(...).to_csv(...)";
 
 /// Reads the columns of a file.
 ///
@@ -26,9 +26,9 @@ pub fn read(bytes: Vec<u8>) -> std::result::Result<Vec<NumberColumn>, Fault> {
     // The known panics of the library on broken files are excluded below; this is for others.
     let read = catch_unwind(AssertUnwindSafe(|| columns(bytes)));
     let read = read.unwrap_or_else(|_| Err(broken("its pages")));
-    let columns = read.map_err(|error| (format!("cannot be read as Parquet: {error}"), MEND))?;
+    let columns = read.map_err(|error| (format!("cannot be read as Parquet: {error}"), HINT))?;
     if columns.is_empty() {
-        Err(("contains no column of numbers".to_owned(), MEND))
+        Err(("contains no column of numbers".to_owned(), HINT))
     } else {
         Ok(columns)
     }

@@ -42,7 +42,7 @@ pub struct Columns {
 
 impl Columns {
     /// Suggested correction for a missing column.
-    pub const MEND: &str = "start with a line time_s,lever_deg,rocker_angle_deg";
+    pub const HINT: &str = "start with a line time_s,lever_deg,rocker_angle_deg";
 
     /// Reads a header.
     ///
@@ -78,7 +78,7 @@ impl Columns {
                 Err(LineError {
                     column: 1,
                     what,
-                    hint: Self::MEND.to_owned(),
+                    hint: Self::HINT.to_owned(),
                 })
             }
             None => Ok(Self {
