@@ -88,12 +88,12 @@ fn usual(id: &'static str) -> (&'static str, f64) {
     (id, effect(id).values[0])
 }
 
-/// The listed manoeuvre that an experiment proposes.
-fn proposed(lab: &Lab, next: &NextExperiment) -> Manoeuvre {
-    manoeuvres(lab)
-        .into_iter()
-        .find(|manoeuvre| manoeuvre.instruction == next.manoeuvre)
+/// The manoeuvre that an experiment proposes.
+fn proposed(next: &NextExperiment) -> Manoeuvre {
+    let proposal = next.proposal.clone();
+    proposal
         .unwrap_or_else(|| panic!("a listed manoeuvre, not {next}"))
+        .manoeuvre
 }
 
 /// Ids of the effects that an explanation names, and whether it leaves any of them open.
@@ -119,7 +119,7 @@ fn closes(hidden: &str, lab: &mut Lab) -> (Manoeuvre, Vec<&'static str>) {
         .filter(|id| *id != hidden)
         .collect();
     assert!(!rivals.is_empty(), "{hidden}: {next}");
-    let manoeuvre = proposed(lab, &next);
+    let manoeuvre = proposed(&next);
     lab.measure(&manoeuvre.runs);
     let second = lab.explain();
     let step = second.steps.iter().find(|step| step.effect.id() == hidden);
@@ -160,7 +160,7 @@ fn hysteresis_is_told_from_a_threshold_by_a_current_that_comes_back() {
     let lab = Lab::new(Family::Steady, usual(ids[0]), ALL, &rising_lifts());
     let twins = Twins::new(&lab, ids);
     let next = next_experiment(Problem::new(&twins.experiment, &lab.model), &[twins.pair()]);
-    let manoeuvre = proposed(&lab, &next.expect("a pair"));
+    let manoeuvre = proposed(&next.expect("a pair"));
     let comes_back = ["triangle", "reversals", "staircase"];
     assert!(
         comes_back.iter().any(|kind| manoeuvre.name.contains(kind)),
@@ -225,7 +225,7 @@ fn the_proposed_experiment_separates_confounded_effects() {
             &[before.pair()],
         );
         let next = next.expect("a pair");
-        let manoeuvre = proposed(&lab, &next);
+        let manoeuvre = proposed(&next);
         lab.measure(&manoeuvre.runs);
         let after = Twins::new(&lab, ids).angle_deg;
         let before = before.angle_deg;
@@ -244,7 +244,7 @@ fn a_ringing_plant_is_designed_for_as_well() {
     let twins = Twins::new(&lab, ids);
     let next = next_experiment(Problem::new(&twins.experiment, &lab.model), &[twins.pair()]);
     let next = next.expect("a pair");
-    let manoeuvre = proposed(&lab, &next);
+    let manoeuvre = proposed(&next);
     assert!(
         changes_pressure(&manoeuvre) || manoeuvre.name.contains("steps"),
         "{next}"

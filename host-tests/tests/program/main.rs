@@ -17,6 +17,7 @@ mod from_bus_to_model;
 mod import;
 mod json_schema;
 mod loop_scenarios;
+mod next_folder;
 mod other_valves;
 mod schema;
 mod shell;

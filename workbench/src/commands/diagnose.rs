@@ -9,6 +9,7 @@ use hitch_identification::explanation::explain::fit_base;
 use crate::arguments::baseline::BaselineArg;
 use crate::arguments::model::ModelArg;
 use crate::arguments::next_command::{self, Standing};
+use crate::commands::next_folder::NextFolder;
 use crate::error::Error;
 use crate::explanation::{Base, Diagnosis, Head, Posed};
 use crate::output::progress::Progress;
@@ -18,7 +19,7 @@ use crate::report::diagnosis_page;
 
 /// Arguments of `hitch diagnose`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: hitch diagnose lab-a --model dynamic --report lab-a.html")]
+#[command(after_help = "Example: hitch diagnose lab-a --model dynamic --report lab-a.html --next experiment")]
 pub struct Args {
     /// Folder of the campaign
     campaign: PathBuf,
@@ -31,6 +32,8 @@ pub struct Args {
     /// Write a report to this file: self-contained HTML
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    next: NextFolder,
 }
 
 /// Runs the command.
@@ -42,6 +45,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     inputs.push(args.model.file());
     inputs.extend(args.baseline.files());
     let outputs = Outputs::check([args.json.target(), args.report.as_deref()], &inputs)?;
+    args.next.check()?;
     let Posed {
         model,
         campaign,
@@ -58,6 +62,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         let page = diagnosis_page::page(&shown, &found, &experiment, &model);
         output::write_file(path, page.as_bytes())?;
     }
+    let written = args.next.write(&shown.next)?;
     outputs.tell(&args.json, &shown, || {
         let Head {
             unsuitable_base,
@@ -70,6 +75,6 @@ pub fn run(args: &Args) -> Result<(), Error> {
             (false, _) => Standing::Inadequate,
         };
         let next = next_command::next(standing, &args.campaign, &args.model, &args.baseline);
-        format!("{shown}\n{next}")
+        format!("{shown}\n{written}{next}")
     })
 }

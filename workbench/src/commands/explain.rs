@@ -7,6 +7,7 @@ use crate::arguments::model::ModelArg;
 use crate::arguments::next_command;
 use crate::arguments::search::SearchArgs;
 use crate::commands::fleet::FleetArgs;
+use crate::commands::next_folder::NextFolder;
 use crate::error::Error;
 use crate::explanation::{Base, Found, Posed, saving};
 use crate::output::progress::Progress;
@@ -17,7 +18,7 @@ use crate::report::explanation_page;
 /// Arguments of `hitch explain`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Examples:\n  hitch explain lab-a --out lab-a.toml --report lab-a.html\n  hitch explain fleet/* --budget 60 --jsonl fleet.jsonl --resume"
+    after_help = "Examples:\n  hitch explain lab-a --out lab-a.toml --report lab-a.html --next experiment\n  hitch explain fleet/* --budget 60 --jsonl fleet.jsonl --resume"
 )]
 pub struct Args {
     /// Folders of the campaigns; several with --jsonl
@@ -33,6 +34,8 @@ pub struct Args {
     /// Write a report to this file: self-contained HTML
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    next: NextFolder,
     #[command(flatten)]
     search: SearchArgs,
     #[command(flatten)]
@@ -50,6 +53,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         ("--json", args.json.target().is_some()),
         ("--report", args.report.is_some()),
         ("--out", args.out.is_some()),
+        ("--next", args.next.is_given()),
     ];
     match args.fleet.single(&args.campaigns, &others)? {
         Some(campaign) => one(args, campaign),
@@ -83,6 +87,7 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
         args.json.target(),
     ];
     let outputs = Outputs::check(wanted, &inputs)?;
+    args.next.check()?;
     let options = args.search.options();
     let Posed {
         model, experiment, ..
@@ -98,9 +103,10 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     if let Some(path) = &args.report {
         output::write_file(path, explanation_page::page(&found).as_bytes())?;
     }
+    let written = args.next.write(&found.shown.next)?;
     outputs.tell(&args.json, &found.shown, || {
         let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
         let next = next_command::after_explanation(out, folder, &args.model, &args.baseline);
-        format!("{}\n{next}", found.shown)
+        format!("{}\n{written}{next}", found.shown)
     })
 }

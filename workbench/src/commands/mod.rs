@@ -19,6 +19,7 @@ pub mod loop_scenario;
 pub mod main_job;
 pub mod man;
 pub mod model;
+mod next_folder;
 pub mod record;
 pub mod schema;
 pub mod serve;

@@ -7,6 +7,7 @@ mod next;
 mod of_diagnosis;
 mod of_explanation;
 mod of_suggestion;
+mod planned;
 mod rebuilt;
 mod show;
 mod since;
@@ -18,6 +19,7 @@ pub use found::{Explained, Found};
 pub use next::{Detail, Next};
 pub use of_diagnosis::explained;
 pub use of_explanation::parameters;
+pub use planned::{PlannedRun, files as planned_files};
 pub use rebuilt::{rebuilt, saving};
 pub use since::Since;
 

@@ -1,8 +1,10 @@
 //! The proposed next experiment: as a sentence, and in parts.
 
-use hitch_identification::design::NextExperiment;
+use hitch_identification::design::{NextExperiment, Proposal};
 use schemars::JsonSchema;
 use serde::Serialize;
+
+use super::planned::{PlannedRun, planned};
 
 /// The proposed next experiment, if any.
 #[derive(Debug, Clone, Default, Serialize, JsonSchema)]
@@ -11,6 +13,9 @@ pub struct Next {
     pub next_experiment: Option<String>,
     /// In parts.
     pub next_experiment_detail: Option<Detail>,
+    /// In full, for pictures and files.
+    #[serde(skip)]
+    pub proposal: Option<Proposal>,
 }
 
 /// The parts of a proposed experiment.
@@ -27,12 +32,15 @@ pub struct Detail {
     pub expected_likelihood_ratio: Option<f64>,
     /// Rig time, minutes; `None` if no manoeuvre is proposed.
     pub minutes: Option<f64>,
+    /// The runs to log; empty if no listed manoeuvre is proposed.
+    pub runs: Vec<PlannedRun>,
 }
 
 impl From<Option<NextExperiment>> for Next {
     fn from(found: Option<NextExperiment>) -> Self {
         Self {
             next_experiment: found.as_ref().map(ToString::to_string),
+            proposal: found.as_ref().and_then(|next| next.proposal.clone()),
             next_experiment_detail: found.map(Detail::from),
         }
     }
@@ -46,6 +54,7 @@ impl From<NextExperiment> for Detail {
             separates: pairs.map(|(a, b)| [a.id(), b.id()]).collect(),
             expected_likelihood_ratio: known(found.expected_likelihood_ratio),
             minutes: known(found.minutes),
+            runs: found.proposal.as_ref().map(planned).unwrap_or_default(),
             manoeuvre: found.manoeuvre,
             why: found.why,
         }

@@ -117,6 +117,22 @@ pub fn check_folder(path: &Path) -> Result<(), Error> {
         })
 }
 
+/// Checks that a folder of results is new and can be written.
+///
+/// # Errors
+/// If its name means standard output, it has files already, or it cannot be written; `option` is named in the message.
+pub fn check_new_folder(option: &str, path: &Path) -> Result<(), Error> {
+    no_stdout(option, Some(path), "the result is a folder")?;
+    let has_files = fs::read_dir(path).is_ok_and(|mut files| files.next().is_some());
+    if has_files || path.is_file() {
+        return Err(Error::Usage(format!(
+            "{}: exists already, and is not overwritten; give a new folder",
+            path.display()
+        )));
+    }
+    check_folder(path)
+}
+
 /// Creates a folder and those above it, unless they exist.
 ///
 /// # Errors

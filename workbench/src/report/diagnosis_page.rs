@@ -12,6 +12,7 @@ use maud::{Markup, html};
 
 use super::error_map::error_map;
 use super::explanation_page::channels;
+use super::next_figure::next_figure;
 use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::staircase;
@@ -46,6 +47,7 @@ pub fn page(
         h2 { "Error with each effect added alone" }
         (staircase(&bars(shown)))
         (candidates(&shown.candidates))
+        (next_figure(&shown.next))
         (error_map(before, after))
         h2 { "Measured against simulated" }
         (runs(&run_views(before, after)))

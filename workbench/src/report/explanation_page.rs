@@ -6,6 +6,7 @@ use hitch_identification::estimation::fit::Fit;
 use maud::{Markup, html};
 
 use super::error_map::error_map;
+use super::next_figure::next_figure;
 use super::rest_figure::{picture, suggestion};
 use super::run_views::run_views;
 use super::runs::runs;
@@ -39,6 +40,7 @@ pub fn findings(found: &Found) -> Markup {
         @if !found.shown.steps.is_empty() { (steps(&found.shown.steps)) }
         @if let Some(rest) = &found.rest { (picture(rest)) }
         @if let Some(term) = &found.shown.unexplained.suggested { (suggestion(term)) }
+        (next_figure(&found.shown.next))
     }
 }
 

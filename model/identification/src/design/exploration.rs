@@ -13,6 +13,7 @@ use crate::design::levels::Levels;
 use crate::design::manoeuvre::TEMPLATES;
 use crate::design::next::NextExperiment;
 use crate::design::plan::Manoeuvre;
+use crate::design::proposal::{Expecting, Proposal};
 use crate::estimation::fit::Fit;
 
 /// Sample rate of the feasibility check, Hz.
@@ -66,7 +67,15 @@ pub fn exploring(problem: Problem<'_>, fit: &Fit, depends_on: &[Signal]) -> Next
         .worst()
         .map(|place| format!("the unexplained error is largest {place}"));
     let why: Vec<String> = place.into_iter().chain([varies]).collect();
-    NextExperiment::exploring(manoeuvre, why.join("; "))
+    let proposal = Proposal {
+        manoeuvre: manoeuvre.clone(),
+        channels: experiment.noise.map(f64::is_finite),
+        models: vec![Expecting {
+            title: "the present model".to_owned(),
+            model: machine.clone(),
+        }],
+    };
+    NextExperiment::exploring(proposal, &why.join("; "))
 }
 
 /// Names of the manoeuvres that vary a signal, and how.

@@ -6,6 +6,7 @@
 //!   [`feasibility`] checks whether the machine can carry it out.
 //! * [`separation`]: the expected likelihood ratio of a manoeuvre between two rivals, after refitting the wrong one.
 //! * [`next`]: the selection of a manoeuvre.
+//! * [`proposal`]: the selected manoeuvre in full, with what the rivals expect of it.
 //! * [`exploration`]: a manoeuvre that varies what an unexplained error depends on.
 //! * [`sensor`]: an additional sensor, if no manoeuvre helps.
 
@@ -17,10 +18,12 @@ pub mod levels;
 pub mod manoeuvre;
 pub mod next;
 pub mod plan;
+pub mod proposal;
 pub mod sensor;
 pub mod separation;
 pub mod template;
 
 pub use alternative::{Alternative, Replacement};
 pub use next::{NextExperiment, next_experiment};
+pub use proposal::{Expecting, Proposal};
 pub use separation::{Pair, Rival};

@@ -12,8 +12,9 @@ use crate::design::feasibility::{is_liftable, is_within_proof};
 use crate::design::levels::Levels;
 use crate::design::manoeuvre::TEMPLATES;
 use crate::design::plan::Manoeuvre;
+use crate::design::proposal::{Expecting, Proposal};
 use crate::design::sensor::additional_instrument;
-use crate::design::separation::{Pair, PairPrior, TestBench};
+use crate::design::separation::{Pair, PairPrior, Rival, TestBench};
 use crate::selection::evidence::DISTINGUISHABLE;
 
 /// Expected likelihood ratio that is decisive: a measured one has a standard deviation of twice its square root, and
@@ -34,6 +35,8 @@ pub struct NextExperiment {
     pub expected_likelihood_ratio: f64,
     /// Rig time, minutes, with set-up; NaN if no manoeuvre is proposed.
     pub minutes: f64,
+    /// The manoeuvre in full; `None` if no listed one is proposed.
+    pub proposal: Option<Proposal>,
 }
 
 impl fmt::Display for NextExperiment {
@@ -56,22 +59,26 @@ impl NextExperiment {
             separates: Vec::new(),
             expected_likelihood_ratio: f64::NAN,
             minutes: f64::NAN,
+            proposal: None,
         }
     }
 
     /// A manoeuvre for a reason other than the separation of effects.
     #[must_use]
-    pub fn exploring(manoeuvre: &Manoeuvre, why: String) -> Self {
+    pub fn exploring(proposal: Proposal, why: &str) -> Self {
+        let manoeuvre = &proposal.manoeuvre;
         Self {
             manoeuvre: manoeuvre.instruction.clone(),
             why: format!("{why} (about {} minutes)", rounded(manoeuvre.minutes())),
             separates: Vec::new(),
             expected_likelihood_ratio: f64::NAN,
             minutes: manoeuvre.minutes(),
+            proposal: Some(proposal),
         }
     }
 
     fn of(
+        bench: &TestBench,
         manoeuvre: &Manoeuvre,
         judged: &Judged,
         pairs: &[Pair],
@@ -103,6 +110,9 @@ impl NextExperiment {
             separates: distinguished(true).collect(),
             expected_likelihood_ratio: ratio,
             minutes,
+            proposal: judged
+                .first(bar)
+                .map(|index| between(bench, manoeuvre, pairs[index])),
         }
     }
 
@@ -122,6 +132,7 @@ impl NextExperiment {
             separates: Vec::new(),
             expected_likelihood_ratio: best,
             minutes: f64::NAN,
+            proposal: None,
         }
     }
 }
@@ -135,6 +146,12 @@ impl Judged {
     fn distinguished(&self, bar: f64) -> impl Iterator<Item = f64> {
         let ratios = self.likelihood_ratios.iter().copied();
         ratios.filter(move |ratio| *ratio >= bar)
+    }
+
+    /// Index of the first pair that is distinguished.
+    fn first(&self, bar: f64) -> Option<usize> {
+        let mut ratios = self.likelihood_ratios.iter();
+        ratios.position(|ratio| *ratio >= bar)
     }
 
     /// Smallest ratio of the pairs that are distinguished.
@@ -189,8 +206,21 @@ pub fn next_experiment(problem: Problem<'_>, pairs: &[Pair]) -> Option<NextExper
     // The one with the largest ratio distinguishes a pair, so that the one of most merit does.
     chosen.map(|index| {
         let (manoeuvre, judged) = (&listed.manoeuvres[index], &judged[index]);
-        NextExperiment::of(manoeuvre, judged, pairs, bar, instrument)
+        NextExperiment::of(&bench, manoeuvre, judged, pairs, bar, instrument)
     })
+}
+
+/// A manoeuvre with what the rivals of a pair expect of it.
+fn between(bench: &TestBench, manoeuvre: &Manoeuvre, pair: Pair) -> Proposal {
+    let expecting = |rival: Rival| Expecting {
+        title: rival.effect.title().to_owned(),
+        model: bench.with(rival),
+    };
+    Proposal {
+        manoeuvre: manoeuvre.clone(),
+        models: pair.rivals().map(expecting).into(),
+        channels: bench.channels(),
+    }
 }
 
 /// The listed manoeuvres with loads that the machine can lift. Their pressures are simulated only for those that are

@@ -148,12 +148,18 @@ impl RunPlan {
     /// The rig of the run.
     #[must_use]
     pub fn rig(&self, model: &Model) -> Rig {
+        let (low_rad, _) = model.linkage().swing_rad();
+        self.bench().rig(self.start_rad(model).unwrap_or(low_rad))
+    }
+
+    /// Rocker angle at the start, rad; `None` on a flow bench.
+    #[must_use]
+    pub fn start_rad(&self, model: &Model) -> Option<f64> {
         let (low_rad, high_rad) = model.linkage().swing_rad();
-        let start = match self.stand {
-            Stand::Hitch { start, .. } => start,
-            Stand::Flow { .. } => 0.0,
-        };
-        self.bench().rig(low_rad + start * (high_rad - low_rad))
+        match self.stand {
+            Stand::Hitch { start, .. } => Some(low_rad + start * (high_rad - low_rad)),
+            Stand::Flow { .. } => None,
+        }
     }
 
     /// Time stamps of its samples, s, at a rate, Hz.

@@ -1,7 +1,6 @@
 //! A folder of simulated runs that is a campaign.
 
 use std::collections::HashSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use hitch_campaign::{Campaign, Run};
@@ -27,15 +26,7 @@ impl Folder {
     /// # Errors
     /// If it is not writable, or has files already.
     pub fn new(path: &Path) -> Result<Self, Error> {
-        output::no_stdout("--out", Some(path), "the result is a folder")?;
-        let has_files = fs::read_dir(path).is_ok_and(|mut files| files.next().is_some());
-        if has_files || path.is_file() {
-            return Err(Error::Usage(format!(
-                "{}: exists already, and is not overwritten; give a new folder",
-                path.display()
-            )));
-        }
-        output::check_folder(path)?;
+        output::check_new_folder("--out", path)?;
         Ok(Self {
             path: path.to_path_buf(),
             names: HashSet::new(),

@@ -1,0 +1,99 @@
+//! The proposed next experiment: its runs, their currents, and what the models expect.
+
+use hitch_campaign::Run;
+use hitch_plant::Channel;
+use maud::{Markup, html};
+
+use super::chart::Stroke;
+use super::drawn::{Drawn, drawn};
+use crate::explanation::{Next, PlannedRun};
+use crate::text::known;
+
+/// Titles of the axis of time.
+const TIME: &str = "time, s";
+
+/// Runs and pictures of the proposed experiment; empty if no manoeuvre is proposed.
+pub fn next_figure(next: &Next) -> Markup {
+    let (Some(proposal), Some(detail)) = (&next.proposal, &next.next_experiment_detail) else {
+        return html! {};
+    };
+    let expected: Vec<(&str, Vec<Run>)> = proposal
+        .models
+        .iter()
+        .map(|of| (of.title.as_str(), proposal.expected(of)))
+        .collect();
+    html! {
+        h2 { "The next experiment" }
+        p { (detail.manoeuvre) "." }
+        @if expected.len() > 1 {
+            p { "Where the two lines differ by more than the noise, the log decides between them." }
+        }
+        @for (index, run) in detail.runs.iter().enumerate() {
+            h3 { (format!("Run {}: {}", index + 1, conditions(run))) }
+            (drawn(&format!("Currents and expected channels of run {}", index + 1), &charts(&expected, index)))
+        }
+    }
+}
+
+/// Load, start, oil temperature and duration of a run.
+fn conditions(run: &PlannedRun) -> String {
+    let parts = [
+        run.load_kg.map(|kg| format!("{} kg", known(kg, 0))),
+        run.port_pressure_bar
+            .map(|bar| format!("flow bench at {} bar", known(bar, 0))),
+        run.start_angle_deg
+            .map(|deg| format!("from {} deg", known(deg, 1))),
+        Some(format!("oil at {} °C", known(run.oil_temperature_c, 0))),
+        Some(format!("{} s", known(run.duration_s, 0))),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// The currents of a run, then each channel as every model expects it.
+fn charts(expected: &[(&str, Vec<Run>)], index: usize) -> Vec<Drawn> {
+    let runs: Vec<(&str, &Run)> = expected
+        .iter()
+        .filter_map(|(title, runs)| Some((*title, runs.get(index)?)))
+        .collect();
+    let Some((_, first)) = runs.first() else {
+        return Vec::new();
+    };
+    let current = |name: &str, stroke, values: &Vec<f64>| {
+        (
+            name.to_owned(),
+            stroke,
+            (first.time_s.clone(), values.clone()),
+        )
+    };
+    let currents = Drawn {
+        caption: "Currents".to_owned(),
+        axes: [TIME, "current, A"],
+        lines: vec![
+            current("lift current", Stroke::Lift, &first.lift_current_a),
+            current("lowering current", Stroke::Lower, &first.lower_current_a),
+        ],
+    };
+    let channels = Channel::ALL.into_iter().filter_map(|channel| {
+        let line = |((title, run), stroke): (&(&str, &Run), Stroke)| {
+            let values = run.channel(channel)?.to_vec();
+            Some(((*title).to_owned(), stroke, (run.time_s.clone(), values)))
+        };
+        let strokes = [Stroke::After, Stroke::Before];
+        let lines: Vec<_> = runs.iter().zip(strokes).filter_map(line).collect();
+        (!lines.is_empty()).then(|| Drawn {
+            caption: channel.title().to_owned(),
+            axes: [TIME, axis(channel)],
+            lines,
+        })
+    });
+    std::iter::once(currents).chain(channels).collect()
+}
+
+/// Title of the axis of a channel.
+fn axis(channel: Channel) -> &'static str {
+    match channel {
+        Channel::CylinderPressure | Channel::PumpPressure => "pressure, bar",
+        Channel::Flow => "flow, l/min",
+        Channel::RockerAngle => "angle, deg",
+    }
+}
