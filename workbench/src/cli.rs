@@ -4,7 +4,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::commands::{
     add, adopt, calibrate, changes, compare, completions, controller, diagnose, ecu, effects,
     explain, export_fmu, flash_calibration, import, loop_, main_job, man, model, record, schema,
-    serve, simulate, tune,
+    serve, simulate, summary, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -37,6 +37,8 @@ pub enum Command {
     Adopt(adopt::Args),
     /// Compare two campaigns of a machine, or of two machines of a series
     Changes(changes::Args),
+    /// Summarise the lines of many campaigns: machine by effect, and which machines differ
+    Summary(summary::Args),
     /// Show campaign and model in the browser (local only): compare, rank and add effects
     Serve(serve::Args),
     /// List the catalogue of physical effects: equation, parameters, units, source, visibility
@@ -84,6 +86,7 @@ impl Command {
             Self::Explain(args) => explain::run(args),
             Self::Adopt(args) => adopt::run(args),
             Self::Changes(args) => changes::run(args),
+            Self::Summary(args) => summary::run(args),
             Self::Serve(args) => serve::run(args),
             Self::Effects(args) => effects::run(args),
             Self::Model(args) => model::run(args),

@@ -15,6 +15,7 @@ pub mod ecu;
 pub mod error;
 pub mod explanation;
 pub mod field_loop;
+pub mod fleet_summary;
 pub mod fmu_export;
 pub mod import;
 pub mod output;

@@ -135,6 +135,7 @@ const CRATES: [Layers; 11] = [
                 "closed_loop",
                 "comparison",
                 "explanation",
+                "fleet_summary",
                 "fmu_export",
                 "import",
                 "xcp_tool",

@@ -169,3 +169,40 @@ fn options_for_one_campaign_are_refused_with_many() {
     }
     assert!(!dir.path().join("x").exists());
 }
+
+#[test]
+fn a_summary_has_every_machine_and_names_a_foreign_line() {
+    let dir = fleet();
+    let folder = dir.path();
+    call(folder, "explain a b c --budget 5 --jsonl out.jsonl");
+    let (code, said, fault) = call(folder, "summary out.jsonl --json s.json --report s.html");
+    assert_eq!(code, Some(0), "{fault}");
+    assert!(
+        said.starts_with("2 machines: ") && said.contains("1 without a result"),
+        "{said}"
+    );
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(folder.join("s.json")).unwrap()).unwrap();
+    let [first, second] = summary["machines"].as_array().unwrap().as_slice() else {
+        panic!("two machines: {summary}");
+    };
+    assert_eq!(
+        first["effects"], second["effects"],
+        "the campaigns are copies"
+    );
+    for effect in summary["effects"].as_array().unwrap() {
+        assert_eq!(
+            (&effect["machines"], &effect["differ"]),
+            (&json!(2), &json!(0)),
+            "{effect}"
+        );
+    }
+    let report = fs::read_to_string(folder.join("s.html")).unwrap();
+    assert!(
+        report.contains("<th scope=\"row\">a</th>") && report.contains("<th scope=\"row\">c</th>")
+    );
+    call(folder, "compare a c --jsonl compared.jsonl");
+    let (code, _, fault) = call(folder, "summary out.jsonl compared.jsonl");
+    assert_eq!(code, Some(2));
+    assert!(fault.contains("compared.jsonl:1: "), "{fault}");
+}

@@ -19,7 +19,9 @@ use crate::report::diagnosis_page;
 
 /// Arguments of `hitch diagnose`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: hitch diagnose lab-a --model dynamic --report lab-a.html --next experiment")]
+#[command(
+    after_help = "Example: hitch diagnose lab-a --model dynamic --report lab-a.html --next experiment"
+)]
 pub struct Args {
     /// Folder of the campaign
     campaign: PathBuf,

@@ -24,5 +24,6 @@ pub mod record;
 pub mod schema;
 pub mod serve;
 pub mod simulate;
+pub mod summary;
 pub mod tune;
 pub mod tune_scenario;

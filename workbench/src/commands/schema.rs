@@ -9,18 +9,20 @@ use crate::commands::{changes, effects, loop_, tune};
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::explanation::{Diagnosis, Explanation};
+use crate::fleet_summary::FleetSummary;
 use crate::output::{self, Document};
 
 /// Makes the schema of a document.
 type MakeSchema = fn() -> Schema;
 
 /// Commands with the option `--json`, and the schema of their document.
-const DOCUMENTS: [(&str, MakeSchema); 9] = [
+const DOCUMENTS: [(&str, MakeSchema); 10] = [
     ("compare", schema::<Comparison>),
     ("diagnose", schema::<Diagnosis>),
     ("explain", schema::<Explanation>),
     ("adopt", schema::<Explanation>),
     ("changes", schema::<changes::Changes>),
+    ("summary", schema::<FleetSummary>),
     ("model fit", schema::<ShownBaseFit>),
     ("loop", schema::<loop_::Driven<'static>>),
     ("tune", schema::<tune::Tuned>),

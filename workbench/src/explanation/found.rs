@@ -10,9 +10,9 @@ use hitch_identification::search::options::Options;
 use hitch_identification::suggestion::{Suggestion, suggest};
 use hitch_plant::{AddedEffect, Effect, Model, full_name, is_same};
 
-use super::show::significant;
 use super::{Explanation, rebuilt};
 use crate::output::progress::Progress;
+use crate::text::significant;
 
 /// An explanation with its inputs and display form.
 #[derive(Debug, Clone)]

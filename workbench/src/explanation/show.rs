@@ -11,7 +11,7 @@ use super::{
 };
 use crate::text::colour::{self, by_sigma};
 use crate::text::words;
-use crate::text::{Table, indented, known, wrapped};
+use crate::text::{Table, indented, known, significant, wrapped};
 
 /// Indentation of the details of a step, characters.
 const DETAIL: usize = 5;
@@ -423,26 +423,9 @@ impl fmt::Display for Suggested {
     }
 }
 
-/// A number with a fixed number of significant digits.
-pub fn significant(value: f64, digits: i32) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12);
-    format!("{value:.*}", decimals as usize)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_keep_their_significant_digits() {
-        assert_eq!(significant(0.199_04, 4), "0.1990");
-        assert_eq!(significant(0.004_2, 3), "0.00420");
-        assert_eq!(significant(725.4, 3), "725");
-        assert_eq!(significant(0.0, 3), "0");
-    }
 
     const PARAMETER: Parameter = Parameter {
         name: "scale",

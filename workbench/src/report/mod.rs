@@ -11,6 +11,7 @@ mod error_map;
 pub mod explanation_page;
 pub mod field_page;
 pub mod fit_page;
+pub mod fleet_page;
 pub mod loop_page;
 pub mod main_page;
 mod next_figure;
