@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use crate::error::Error;
-use crate::fleet_summary::{FleetSummary, read};
+use crate::fleet_summary::FleetSummary;
+use crate::fleet_summary::read::read;
 use crate::output::targets::Outputs;
 use crate::output::{self, JsonArg};
 use crate::report::fleet_page;

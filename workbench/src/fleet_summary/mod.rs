@@ -1,13 +1,11 @@
 //! Summary over the lines of many campaigns: which machine has which effect, and which machines differ from the others.
-mod read;
+pub mod read;
 mod show;
 
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::Serialize;
-
-pub use read::{Line, read};
 
 /// Confidence from which an effect counts as present.
 pub const PRESENT: f64 = 0.5;
@@ -84,6 +82,20 @@ pub struct Failed {
     pub campaign: String,
     /// What is wrong.
     pub error: String,
+}
+
+/// A line.
+#[derive(Debug, Clone)]
+pub enum Line {
+    /// A result.
+    Result {
+        /// The machine.
+        machine: Machine,
+        /// Units of its effects by name.
+        units: BTreeMap<String, String>,
+    },
+    /// A campaign without a result.
+    Failed(Failed),
 }
 
 impl FleetSummary {

@@ -6,22 +6,8 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::{Failed, Found, Machine};
+use super::{Failed, Found, Line, Machine};
 use crate::error::Error;
-
-/// A line.
-#[derive(Debug, Clone)]
-pub enum Line {
-    /// A result.
-    Result {
-        /// The machine.
-        machine: Machine,
-        /// Units of its effects by name.
-        units: BTreeMap<String, String>,
-    },
-    /// A campaign without a result.
-    Failed(Failed),
-}
 
 /// A line as it is written: of `hitch explain`, or of `hitch changes`, whose explanation is in `new`.
 #[derive(Deserialize)]
