@@ -21,6 +21,7 @@ pub use of_diagnosis::explained;
 pub use of_explanation::parameters;
 pub use planned::{PlannedRun, files as planned_files};
 pub use rebuilt::{rebuilt, saving};
+pub use show::meanings;
 pub use since::Since;
 
 use indexmap::IndexMap;
@@ -211,6 +212,8 @@ pub struct Candidate {
 pub struct Parameter {
     /// Name.
     pub name: &'static str,
+    /// What it is, in a few words.
+    pub meaning: &'static str,
     /// Unit; empty for a pure number.
     pub unit: &'static str,
     /// Estimate, in the unit.

@@ -107,6 +107,7 @@ pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)])
         |(parameter, (value, (low, high))): (&hitch_plant::Parameter, (&f64, &(f64, f64)))| {
             Parameter {
                 name: parameter.name,
+                meaning: parameter.meaning,
                 unit: parameter.unit,
                 value: *value,
                 low: *low,

@@ -6,8 +6,8 @@ use hitch_identification::explanation::explain::Verdict;
 use hitch_identification::selection::candidate::plausibility;
 
 use super::{
-    Alternative, ChannelFigures, Diagnosis, Explanation, Head, Next, NotVisible, Parameter, Step,
-    Suggested, UNSUITABLE_BASE, Unexplained,
+    Alternative, Candidate, ChannelFigures, Diagnosis, Explanation, Head, Next, NotVisible,
+    Parameter, Step, Suggested, UNSUITABLE_BASE, Unexplained,
 };
 use crate::text::colour::{self, by_sigma};
 use crate::text::words;
@@ -146,6 +146,9 @@ impl Explanation {
     }
 }
 
+/// Share of the error from which a candidate has a row; a smaller one is shown as 0.0 %.
+const SHOWN: f64 = 0.0005;
+
 /// Probability of constants that are off from which a diagnosis mentions them.
 const MENTIONED: f64 = 0.05;
 
@@ -167,11 +170,15 @@ impl fmt::Display for Diagnosis {
         let mut table = Table::new([
             "candidate",
             "explains",
-            "error after",
+            "error",
             "confidence",
             "detectability",
         ]);
-        for candidate in &self.candidates {
+        let (acting, idle): (Vec<&Candidate>, Vec<&Candidate>) = self
+            .candidates
+            .iter()
+            .partition(|candidate| candidate.explains >= SHOWN);
+        for candidate in acting {
             table.row([
                 candidate.name(),
                 format!("{:.1} %", 100.0 * candidate.explains),
@@ -179,15 +186,20 @@ impl fmt::Display for Diagnosis {
                     &format!("{:.2}", candidate.error_after),
                     candidate.error_after,
                 ),
-                format!("{:.2}", candidate.confidence),
+                words::in_words(candidate.confidence).to_owned(),
                 format!("{:.2}", candidate.detectability),
             ]);
             if let Some(parameter) = candidate.parameters.first() {
-                table.note(parameter.to_string());
+                table.note(format!("{parameter}: {}", parameter.meaning));
             }
         }
         writeln!(f, "{table}")?;
-        let terms = words::sentences(&[words::CONFIDENCE, words::DETECTABILITY]);
+        if !idle.is_empty() {
+            let names: Vec<String> = idle.iter().map(|candidate| candidate.name()).collect();
+            let line = format!("They explain nothing: {}.", names.join(", "));
+            writeln!(f, "{}", wrapped(&line))?;
+        }
+        let terms = words::sentences(&[words::EXPLAINS, words::CONFIDENCE, words::DETECTABILITY]);
         writeln!(f, "{}", wrapped(&terms))?;
         for candidate in self
             .candidates
@@ -295,6 +307,13 @@ impl Step {
     }
 }
 
+/// What the parameters of an effect are, in a few words.
+pub fn meanings(parameters: &[Parameter]) -> String {
+    let one = |parameter: &Parameter| format!("{}: {}", parameter.name, parameter.meaning);
+    let all: Vec<String> = parameters.iter().map(one).collect();
+    all.join("; ")
+}
+
 /// A step without its number; lines after the first are indented.
 impl Step {
     /// Why an effect that reduces the error is not named, as a sentence.
@@ -321,6 +340,7 @@ impl fmt::Display for Step {
         // The number that precedes it takes the place of the indentation.
         writeln!(f, "{}", indented(&head, DETAIL).trim_start())?;
         let mut detail = |line: &str| writeln!(f, "{}", indented(line, DETAIL));
+        detail(&meanings(&self.parameters))?;
         detail(&format!(
             "error {:.2} -> {}, {}; confidence: {}; detectability {:.2}",
             self.error_before,
@@ -360,6 +380,7 @@ impl fmt::Display for Parameter {
             low,
             high,
             at_its_limit,
+            ..
         } = self;
         let space = if unit.is_empty() { "" } else { " " };
         let number = |value: f64| significant(value, 4);
@@ -429,6 +450,7 @@ mod tests {
 
     const PARAMETER: Parameter = Parameter {
         name: "scale",
+        meaning: "relative change of the flow",
         unit: "",
         value: -0.05,
         low: -0.06,

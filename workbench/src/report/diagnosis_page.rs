@@ -127,6 +127,7 @@ fn candidates(candidates: &[Candidate]) -> Markup {
         @if !others.is_empty() {
             details { summary { (others.len()) " other effects" } (page::table(&header, others)) }
         }
+        (page::meanings(candidates.iter().map(|one| (one.name(), one.parameters.as_slice()))))
         p.note { (words::sentences(&[words::EXPLAINS, words::CONFIDENCE, words::DETECTABILITY, words::SIGMA])) }
     }
 }

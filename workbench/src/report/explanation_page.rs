@@ -164,6 +164,7 @@ fn steps(steps: &[Step]) -> Markup {
     let rows: Vec<Vec<String>> = steps.iter().map(row).collect();
     html! {
         (page::table(&header, &rows))
+        (page::meanings(steps.iter().map(|step| (step.name(), step.parameters.as_slice()))))
         p.note { (words::sentences(&[words::HELD_OUT, words::CONFIDENCE, words::DETECTABILITY, words::ANGLE, words::SIGMA])) }
     }
 }

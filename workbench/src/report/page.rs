@@ -1,6 +1,8 @@
 //! Page frame of a report.
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use crate::explanation::{self, Parameter};
+
 use crate::web;
 
 /// Style of every report: wide tables scroll; sections are not split in print.
@@ -50,6 +52,14 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> Markup {
         } }
     };
     folded(&table, rows.len())
+}
+
+/// What the parameters of effects mean, by name of the effect; folded.
+pub fn meanings<'a>(effects: impl Iterator<Item = (String, &'a [Parameter])>) -> Markup {
+    html! { details {
+        summary { "What the parameters mean" }
+        dl { @for (name, parameters) in effects { dt { (name) } dd { (explanation::meanings(parameters)) } } }
+    } }
 }
 
 /// The lines of a cell.
