@@ -46,6 +46,12 @@ impl Shape<'_> {
     }
 }
 
+/// Smallest and largest size.
+pub type Sizes = (f64, f64);
+
+/// Gives a rig the physics at a size, with a drawn shape.
+pub type Hide = fn(&mut Physics, f64, &mut Shape);
+
 /// A physics that can be hidden.
 #[derive(Debug)]
 pub struct Hideable {
@@ -54,7 +60,7 @@ pub struct Hideable {
     /// Unit of its size; empty for a pure number.
     pub unit: &'static str,
     /// Smallest and largest size that is drawn, evenly in the logarithm.
-    pub sizes: (f64, f64),
+    pub sizes: Sizes,
     /// Whether the size may be negative as well.
     pub signed: bool,
     /// Whether the quasi-static rig can have it.
@@ -62,7 +68,23 @@ pub struct Hideable {
     /// Whether the size of the faithful form has the meaning of the catalogue's first parameter.
     pub comparable: bool,
     /// Puts it into a rig.
-    pub hide: fn(&mut Physics, f64, &mut Shape),
+    pub hide: Hide,
+}
+
+impl Hideable {
+    /// A physics of positive size that the quasi-static rig can have, with the catalogue's measure of its size.
+    #[must_use]
+    pub const fn new(id: &'static str, unit: &'static str, sizes: Sizes, hide: Hide) -> Self {
+        Self {
+            id,
+            unit,
+            sizes,
+            signed: false,
+            steady: true,
+            comparable: true,
+            hide,
+        }
+    }
 }
 
 impl Hideable {

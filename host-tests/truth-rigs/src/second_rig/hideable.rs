@@ -5,7 +5,7 @@
 //! temperature-dependent coefficients.
 
 use super::data_sheet::{BAR, LPM};
-use super::hidden::{Hideable, Shape};
+use super::hidden::{Hide, Hideable, Shape, Sizes};
 use super::outside::OUTSIDE;
 use super::physics::{FlowForce, Ground, Physics, Play, SpoolMotion, Stiction};
 
@@ -18,57 +18,25 @@ pub fn find(id: &str) -> Option<&'static Hideable> {
         .find(|hideable| hideable.id == id)
 }
 
-const fn steady(
-    id: &'static str,
-    unit: &'static str,
-    sizes: (f64, f64),
-    hide: fn(&mut Physics, f64, &mut Shape),
-) -> Hideable {
-    Hideable {
-        id,
-        unit,
-        sizes,
-        signed: false,
-        steady: true,
-        comparable: true,
-        hide,
-    }
-}
-
-const fn signed(
-    id: &'static str,
-    unit: &'static str,
-    sizes: (f64, f64),
-    hide: fn(&mut Physics, f64, &mut Shape),
-) -> Hideable {
+const fn signed(id: &'static str, unit: &'static str, sizes: Sizes, hide: Hide) -> Hideable {
     Hideable {
         signed: true,
-        ..steady(id, unit, sizes, hide)
+        ..Hideable::new(id, unit, sizes, hide)
     }
 }
 
 /// An effect whose size is stated in another way than the catalogue's.
-const fn otherwise(
-    id: &'static str,
-    unit: &'static str,
-    sizes: (f64, f64),
-    hide: fn(&mut Physics, f64, &mut Shape),
-) -> Hideable {
+const fn otherwise(id: &'static str, unit: &'static str, sizes: Sizes, hide: Hide) -> Hideable {
     Hideable {
         comparable: false,
-        ..steady(id, unit, sizes, hide)
+        ..Hideable::new(id, unit, sizes, hide)
     }
 }
 
-const fn dynamic(
-    id: &'static str,
-    unit: &'static str,
-    sizes: (f64, f64),
-    hide: fn(&mut Physics, f64, &mut Shape),
-) -> Hideable {
+const fn dynamic(id: &'static str, unit: &'static str, sizes: Sizes, hide: Hide) -> Hideable {
     Hideable {
         steady: false,
-        ..steady(id, unit, sizes, hide)
+        ..Hideable::new(id, unit, sizes, hide)
     }
 }
 
@@ -91,24 +59,24 @@ pub static HIDEABLE: [Hideable; 28] = [
     signed("lower-flow-scale", "", (0.02, 0.1), |rig, size, shape| {
         rig.lower_flow_error = flow_error(size, shape);
     }),
-    steady("solenoid-hysteresis", "A", (0.04, 0.35), hysteresis),
-    steady("spool-stiction", "A", (0.04, 0.2), |rig, size, shape| {
+    Hideable::new("solenoid-hysteresis", "A", (0.04, 0.35), hysteresis),
+    Hideable::new("spool-stiction", "A", (0.04, 0.2), |rig, size, shape| {
         rig.stiction = Some(Stiction {
             band_a: size,
             jump_a: size * shape.usual_or_between(1.0, 0.5, 1.0),
             follows: shape.structured(),
         });
     }),
-    steady("spool-lag", "s", (0.02, 0.12), |rig, size, shape| {
+    Hideable::new("spool-lag", "s", (0.02, 0.12), |rig, size, shape| {
         rig.spool = spool(size, shape);
     }),
-    steady("flow-force", "", (0.08, 0.6), |rig, size, shape| {
+    Hideable::new("flow-force", "", (0.08, 0.6), |rig, size, shape| {
         rig.flow_force = FlowForce {
             strength: size,
             on_spool: shape.structured(),
         };
     }),
-    steady(
+    Hideable::new(
         "compensator-droop",
         "bar/bar",
         (0.001, 0.01),
@@ -118,7 +86,7 @@ pub static HIDEABLE: [Hideable; 28] = [
             rig.compensator_lag_s = shape.usual_or_between(0.0, 0.003, 0.012);
         },
     ),
-    steady(
+    Hideable::new(
         "check-valve-loss",
         "bar",
         (0.05, 0.6),
@@ -128,13 +96,13 @@ pub static HIDEABLE: [Hideable; 28] = [
             rig.check_loss_pa_s_m3 = with_flow * size * BAR / (20.0 * LPM);
         },
     ),
-    steady("pump-leakage", "l/min/bar", (0.03, 0.15), |rig, size, _| {
+    Hideable::new("pump-leakage", "l/min/bar", (0.03, 0.15), |rig, size, _| {
         rig.pump_slip_m3_s_pa = size * LPM / BAR;
     }),
     otherwise("relief-override", "bar", (8.0, 30.0), |rig, size, _| {
         rig.relief_override_pa = size * BAR;
     }),
-    steady(
+    Hideable::new(
         "lowering-leakage",
         "l/min/bar",
         (0.0005, 0.008),
@@ -143,7 +111,7 @@ pub static HIDEABLE: [Hideable; 28] = [
             rig.leakage_thins = shape.structured();
         },
     ),
-    steady("return-line-loss", "bar", (0.3, 4.0), |rig, size, shape| {
+    Hideable::new("return-line-loss", "bar", (0.3, 4.0), |rig, size, shape| {
         let laminar = shape.usual_or_between(0.0, 0.05, 0.3);
         let flow = 40.0 * LPM;
         rig.return_turbulent = (1.0 - laminar) * size * BAR / (flow * flow);
@@ -152,7 +120,7 @@ pub static HIDEABLE: [Hideable; 28] = [
     otherwise("oil-viscosity", "", (20.0, 200.0), |rig, size, _| {
         rig.laminar_flow_number = size;
     }),
-    steady(
+    Hideable::new(
         "coulomb-friction",
         "N",
         (80.0, 900.0),
@@ -162,7 +130,7 @@ pub static HIDEABLE: [Hideable; 28] = [
             rig.friction.trembles = shape.structured() && shape.between(0.0, 1.0) < 0.5;
         },
     ),
-    steady(
+    Hideable::new(
         "stribeck-friction",
         "N",
         (80.0, 700.0),
@@ -173,7 +141,7 @@ pub static HIDEABLE: [Hideable; 28] = [
             rig.friction.gaussian = shape.structured();
         },
     ),
-    steady(
+    Hideable::new(
         "viscous-friction",
         "N s/m",
         (800.0, 9000.0),
@@ -182,17 +150,17 @@ pub static HIDEABLE: [Hideable; 28] = [
             rig.friction.thickens = shape.structured();
         },
     ),
-    steady("pin-friction", "", (0.01, 0.08), |rig, size, shape| {
+    Hideable::new("pin-friction", "", (0.01, 0.08), |rig, size, shape| {
         rig.pin_friction = size;
         rig.pin_friction_ripple = shape.usual_or_between(0.0, -0.3, 0.3);
     }),
-    steady("pin-backlash", "mm", (0.3, 3.0), |rig, size, _| {
+    Hideable::new("pin-backlash", "mm", (0.3, 3.0), |rig, size, _| {
         rig.sensors.backlash_m = 1e-3 * size;
     }),
     otherwise("load-arm", "m", (0.1, 0.6), |rig, size, _| {
         rig.load_arm_m = size;
     }),
-    steady("ground-contact", "m", (0.06, 0.25), |rig, size, shape| {
+    Hideable::new("ground-contact", "m", (0.06, 0.25), |rig, size, shape| {
         rig.ground = Some(Ground {
             height_m: size,
             stiffness_n_m: shape.usual_or_between(1e6, 2e5, 2e6),
@@ -202,7 +170,7 @@ pub static HIDEABLE: [Hideable; 28] = [
     signed("angle-sensor-gain", "", (0.004, 0.04), |rig, size, _| {
         rig.sensors.angle_gain = size;
     }),
-    steady(
+    Hideable::new(
         "angle-sensor-lag",
         "s",
         (0.015, 0.25),

@@ -1,22 +1,11 @@
 //! Physics outside the catalogue: the expected verdict is "unexplained".
 
-use super::hidden::{Hideable, Shape};
-use super::physics::Physics;
+use super::hidden::{Hide, Hideable, Sizes};
 
-const fn outside(
-    id: &'static str,
-    unit: &'static str,
-    sizes: (f64, f64),
-    hide: fn(&mut Physics, f64, &mut Shape),
-) -> Hideable {
+const fn outside(id: &'static str, unit: &'static str, sizes: Sizes, hide: Hide) -> Hideable {
     Hideable {
-        id,
-        unit,
-        sizes,
-        signed: false,
-        steady: true,
         comparable: false,
-        hide,
+        ..Hideable::new(id, unit, sizes, hide)
     }
 }
 
