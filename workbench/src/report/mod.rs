@@ -13,6 +13,7 @@ pub mod field_page;
 pub mod fit_page;
 pub mod loop_page;
 pub mod main_page;
+pub mod map_view;
 pub mod page;
 mod plotted;
 pub mod rebuild_page;

@@ -1,5 +1,6 @@
 //! Files that the page of `hitch serve` and the reports share, and the plotting library.
 mod bundle;
+pub mod plot;
 
 pub use bundle::bundle;
 
