@@ -11,8 +11,9 @@ use super::views::run::RunView;
 use super::views::state::Begun;
 use super::views::trial::{RunParts, Signature, TriedRuns};
 use crate::comparison::{ChangedStretch, WorstStretch};
+use crate::report::error_map::ModelMap;
 use crate::report::map_view::Located;
-use crate::web::plot::{Samples, SimulatedChannel};
+use crate::web::plot::{RowPlot, Samples, SimulatedChannel};
 
 /// The generated file, in the crate.
 const FILE: &str = "src/web/views.d.ts";
@@ -68,6 +69,8 @@ fn views(generator: &mut SchemaGenerator) {
     root::<Located<WorstStretch>>(generator);
     root::<Located<ChangedStretch>>(generator);
     root::<Message>(generator);
+    root::<ModelMap>(generator);
+    root::<RowPlot<Vec<f64>, Samples>>(generator);
 }
 
 fn root<T: JsonSchema>(generator: &mut SchemaGenerator) {

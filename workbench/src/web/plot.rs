@@ -86,3 +86,55 @@ pub struct SimulatedChannel<S> {
     /// Error, sigma.
     pub error: f64,
 }
+
+/// A plot with rows of its own.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "RowPlot")]
+pub struct RowPlot<T, S> {
+    /// Title of the abscissa, with its unit.
+    pub x_title: String,
+    /// Ends of the abscissa.
+    pub span: [f64; 2],
+    /// The common abscissa.
+    pub time_s: T,
+    /// The rows.
+    pub rows: Vec<PlotRow<T, S>>,
+}
+
+/// A row of a plot.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "PlotRow")]
+pub struct PlotRow<T, S> {
+    /// Title.
+    pub title: String,
+    /// Unit of its values.
+    pub unit: String,
+    /// Preferred height, px.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub height: Option<f64>,
+    /// Its lines.
+    pub lines: Vec<PlotLine<T, S>>,
+}
+
+/// A line of a row.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "PlotLine")]
+pub struct PlotLine<T, S> {
+    /// Name.
+    pub name: String,
+    /// Lines with the same key share an entry of the legend.
+    pub key: String,
+    /// Name of its colour.
+    pub colour: &'static str,
+    /// Its dashes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dash: Option<&'static str>,
+    /// Its width, px.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub width: Option<f64>,
+    /// Its own abscissa.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<T>,
+    /// Its values.
+    pub y: S,
+}

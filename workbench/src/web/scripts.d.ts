@@ -31,36 +31,18 @@ interface RunView {
 }
 
 /** A run with its channels, or a plot with rows of its own. */
-type PlotView = Partial<RunView> & {
-  time_s: number[];
-  rows?: PlotRow[];
-  span?: [number, number];
-  x_title?: string;
-};
+type PlotView = Partial<RunView & RowPlot> & Pick<RowPlot, "time_s">;
 
 interface PlotRow {
-  title: string;
-  unit: string;
-  /** Preferred height, px. */
-  height?: number;
   /** Largest number of ticks of its axis. */
   ticks?: number;
   /** Whether the band of the noise is drawn. */
   band?: boolean;
-  lines: PlotLine[];
 }
 
 interface PlotLine {
-  name: string;
-  /** Lines with the same key share an entry of the legend. */
-  key: string;
-  colour: string;
-  dash?: string | null;
-  width?: number;
-  /** Its own abscissa. */
-  x?: number[] | null;
-  y: Samples;
   unit?: string;
+  /** Title of its channel. */
   of?: string;
   /** Whether it depends on the parameters of the model. */
   changes?: boolean;
@@ -91,10 +73,6 @@ interface Trial {
   value: number;
 }
 
-interface Cell {
-  /** In a report: the stretch with the largest error. */
-  worst?: (Place & { run: number; error: number }) | null;
-}
 /** The proposed assignment of logs. */
 interface Proposal {
   name: string;

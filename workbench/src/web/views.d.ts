@@ -206,6 +206,24 @@ interface ListedRun {
   error: number | null;
 }
 
+/** A cell of an error map. */
+interface LocatedCell {
+  /** Grouping of the samples. */
+  by: Grouping;
+  /** Name of the group. */
+  part: string;
+  /** Key of the channel. */
+  channel: string;
+  /** Root mean square in sigma. */
+  error: number;
+  /** Mean in sigma; positive where the measurement exceeds the model. */
+  bias: number;
+  /** Compared samples. */
+  samples: number;
+  /** The stretch with its largest error. */
+  worst: LocatedWorstStretch | null;
+}
+
 /** A stretch of time of a run. */
 interface LocatedChangedStretch {
   /** Index of the run. */
@@ -239,6 +257,18 @@ interface MeasuredChannel {
 /** A message of a computation to its tab. */
 type Message = { kind: "progress"; text: string; fraction: number | null; error: number | null } | { kind: "candidate"; candidate: ShownCandidate; fraction: number } | { kind: "done" } | { kind: "failed"; text: string };
 
+/** The error map of a model; each cell with its worst second. */
+interface ModelMap {
+  /** Which model it is. */
+  name: string;
+  /** Groupings of the cells. */
+  groupings: GroupingTitle[];
+  /** The measured channels. */
+  channels: MeasuredChannel[];
+  /** The cells. */
+  cells: LocatedCell[];
+}
+
 /** A parameter with its interval. */
 interface Parameter {
   /** Name. */
@@ -261,6 +291,48 @@ interface ParameterMeaning {
   name: string;
   /** Meaning. */
   meaning: string;
+}
+
+/** A line of a row. */
+interface PlotLine {
+  /** Name. */
+  name: string;
+  /** Lines with the same key share an entry of the legend. */
+  key: string;
+  /** Name of its colour. */
+  colour: string;
+  /** Its dashes. */
+  dash?: string;
+  /** Its width, px. */
+  width?: number;
+  /** Its own abscissa. */
+  x?: number[];
+  /** Its values. */
+  y: Samples;
+}
+
+/** A row of a plot. */
+interface PlotRow {
+  /** Title. */
+  title: string;
+  /** Unit of its values. */
+  unit: string;
+  /** Preferred height, px. */
+  height?: number;
+  /** Its lines. */
+  lines: PlotLine[];
+}
+
+/** A plot with rows of its own. */
+interface RowPlot {
+  /** Title of the abscissa, with its unit. */
+  x_title: string;
+  /** Ends of the abscissa. */
+  span: [number, number];
+  /** The common abscissa. */
+  time_s: number[];
+  /** The rows. */
+  rows: PlotRow[];
 }
 
 /** A channel of a run: samples in its unit, residuals and errors in sigma. */
