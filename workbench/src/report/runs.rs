@@ -101,7 +101,7 @@ fn entries(view: &RunView) -> Vec<(Stroke, &'static str)> {
 
 /// The run in the form of the page of `hitch serve`.
 fn data(view: &RunView) -> Option<Data> {
-    let names = is_changed(view).then(|| LineNames {
+    let names = is_changed(view).then_some(LineNames {
         first: Some("model before"),
         simulated: Some("model after"),
         second: None,

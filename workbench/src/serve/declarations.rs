@@ -6,6 +6,10 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value};
 
+use super::first::Sheet;
+use super::own_term::FormulaElements;
+use super::routes::Checked;
+use super::upload::surveyed::Surveyed;
 use super::views::message::Message;
 use super::views::run::RunView;
 use super::views::state::Begun;
@@ -70,6 +74,10 @@ fn views(generator: &mut SchemaGenerator) {
     root::<Located<ChangedStretch>>(generator);
     root::<Message>(generator);
     root::<ModelMap>(generator);
+    root::<Surveyed>(generator);
+    root::<Sheet>(generator);
+    root::<FormulaElements>(generator);
+    root::<Checked>(generator);
     root::<RowPlot<Vec<f64>, Samples>>(generator);
 }
 

@@ -5,6 +5,7 @@
 mod assets;
 #[cfg(test)]
 mod declarations;
+mod fault;
 mod first;
 mod guard;
 mod jobs;

@@ -9,12 +9,14 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_identification::estimate::Estimate;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use tokio_stream::wrappers::BroadcastStream;
 use tokio_stream::{Stream, StreamExt};
 
-use super::own_term::TermForm;
+use super::fault::Fault;
+use super::own_term::{FormulaElements, TermForm};
 use super::parameters::moved;
 use super::session::Step;
 use super::sessions::Sessions;
@@ -23,7 +25,7 @@ use super::tasks::Task;
 use super::views::run::RunView;
 use super::views::state::{Begun, State as SessionState};
 use super::views::trial::{RunParts, Signature, TriedRuns};
-use super::{assets, first, jobs, live, own_term, saving, second_routes, upload};
+use super::{assets, first, jobs, live, saving, second_routes, upload};
 use crate::comparison::{WorstStretch, worst_in_part};
 use crate::error::Error;
 use crate::report::map_view::Located;
@@ -182,8 +184,8 @@ async fn preview_all(State(sessions): Known, Json(trial): Json<Trial>) -> Answer
     Ok(Json(view.await?))
 }
 
-async fn formulas() -> Json<Value> {
-    Json(own_term::offered())
+async fn formulas() -> Json<FormulaElements> {
+    Json(FormulaElements::all())
 }
 
 /// A term to look at.
@@ -192,10 +194,17 @@ struct Draft {
     term: TermForm,
 }
 
+/// The answer about a term.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Checked {
+    /// What is wrong with it.
+    fault: Option<Fault>,
+}
+
 /// What is wrong with a term; nothing if it is right.
-async fn check(Json(draft): Json<Draft>) -> Answer {
+async fn check(Json(draft): Json<Draft>) -> Answer<Checked> {
     let fault = blocking(move || draft.term.check()).await?;
-    Ok(Json(json!({ "fault": fault })))
+    Ok(Json(Checked { fault }))
 }
 
 #[derive(Debug, Deserialize)]

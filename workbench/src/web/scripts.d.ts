@@ -58,6 +58,10 @@ interface Answers {
   signature: Signatures;
   preview: SimulatedChannels;
   "preview/all": TriedRuns;
+  formulas: FormulaElements;
+  check: Checked;
+  "first/sheet": Sheet;
+  "upload/survey": Surveyed;
 }
 
 /** The answer to a request. */
@@ -71,41 +75,4 @@ interface Trial {
   effect: number;
   parameter: number;
   value: number;
-}
-
-/** The proposed assignment of logs. */
-interface Proposal {
-  name: string;
-  logs: ProposedLog[];
-  groups: ProposedGroup[];
-  signals: Signal[];
-}
-
-interface ProposedLog {
-  file: string;
-  load_kg: number | null;
-}
-
-interface Signal {
-  key: string;
-  /** Name for a reader. */
-  title: string;
-  unit: string;
-  units: string[];
-  /** Units of a sensor, with which two points have to be known. */
-  raw: string[];
-}
-
-/** Logs with equal columns. */
-interface ProposedGroup {
-  files: string[];
-  times: boolean;
-  own_units: boolean;
-  columns: { name: string; unit: string | null }[];
-  taken: { channel: string; column: string; unit: string | null; reason: string; assumed: boolean }[];
-  /** What was assumed, and columns of a signal that are left out with the reason. */
-  notes: string[];
-  /** The other columns that are not used. */
-  unused: string[];
-  untold: string | null;
 }

@@ -73,6 +73,12 @@ interface ChangedStretch {
   after: number;
 }
 
+/** The answer about a term. */
+interface Checked {
+  /** What is wrong with it. */
+  fault: Fault | null;
+}
+
 /** The constants of the first model. */
 interface Constants {
   /** Names of those that a fit can hold. */
@@ -143,6 +149,20 @@ interface ExplainedStep {
   parameters: Parameter[];
 }
 
+/** What is wrong, where, and how to correct it. */
+interface Fault {
+  /** The file that is its cause. */
+  file?: string;
+  /** Line in the file, from 1. */
+  line?: number;
+  /** Column in the line, or in a formula, in characters from 1. */
+  column?: number;
+  /** What is wrong. */
+  what: string;
+  /** A suggested correction. */
+  hint?: string;
+}
+
 /** A figure of both calibrations. */
 interface FigureRow {
   /** Cells as text. */
@@ -173,6 +193,34 @@ interface FittedRow {
   cells: string[];
   /** Whether it moved further than its tolerance. */
   beyond: boolean;
+}
+
+/** A place or a signal. */
+interface FormulaElement {
+  /** Its name in formulas. */
+  name: string;
+  /** Its unit. */
+  unit: string;
+  /** Its meaning. */
+  meaning: string;
+}
+
+/** The elements of formulas. */
+interface FormulaElements {
+  /** Where a term acts. */
+  places: FormulaElement[];
+  /** What it can depend on. */
+  signals: FormulaElement[];
+  /** Functions, each with its meaning. */
+  functions: string[];
+}
+
+/** A campaign with its logs. */
+interface FoundCampaign {
+  /** Its name. */
+  campaign: string;
+  /** Number of its runs. */
+  runs: number;
 }
 
 /** Grouping of the samples. */
@@ -323,6 +371,64 @@ interface PlotRow {
   lines: PlotLine[];
 }
 
+/** The proposed assignment of logs. */
+interface ProposedCampaign {
+  /** Name of the campaign. */
+  name: string;
+  /** The logs. */
+  logs: ProposedLog[];
+  /** Logs with equal columns. */
+  groups: ProposedGroup[];
+  /** The signals of a run. */
+  signals: Signal[];
+}
+
+/** A column of a log. */
+interface ProposedColumn {
+  /** Its name. */
+  name: string;
+  /** The unit that the log states. */
+  unit: string | null;
+}
+
+/** Logs with equal columns. */
+interface ProposedGroup {
+  /** Their files. */
+  files: string[];
+  /** Whether they have a column of times. */
+  times: boolean;
+  /** Whether their columns have units of their own. */
+  own_units: boolean;
+  /** Their columns. */
+  columns: ProposedColumn[];
+  /** The columns that are taken. */
+  taken: TakenColumn[];
+  /** What was assumed, and columns of a signal that are left out with the reason. */
+  notes: string[];
+  /** The other columns that are not used. */
+  unused: string[];
+  /** What could not be determined. */
+  untold: string | null;
+}
+
+/** A log. */
+interface ProposedLog {
+  /** Its file. */
+  file: string;
+  /** The load in its name, kg. */
+  load_kg: number | null;
+}
+
+/** A question, with the value of the first model. */
+interface Question {
+  /** Name of the constant. */
+  name: string;
+  /** The question. */
+  question: string;
+  /** The value, as in a model file. */
+  value: string;
+}
+
 /** A plot with rows of its own. */
 interface RowPlot {
   /** Title of the abscissa, with its unit. */
@@ -406,6 +512,12 @@ interface SecondModel {
   changes: CellChange[];
   /** The error map of the second model. */
   cells: Cell[];
+}
+
+/** The questions of data sheets. */
+interface Sheet {
+  /** The questions in their order. */
+  questions: Question[];
 }
 
 /** An effect that may be missing. Its confidence is known only when all are evaluated. */
@@ -524,6 +636,20 @@ interface ShownStep {
   held_out: number | null;
 }
 
+/** A signal of a run. */
+interface Signal {
+  /** Key. */
+  key: string;
+  /** Name for a reader. */
+  title: string;
+  /** Its unit. */
+  unit: string;
+  /** Units that convert to it. */
+  units: string[];
+  /** Units of a sensor, with which two points have to be known. */
+  raw: string[];
+}
+
 /** The part of the residuals of a channel that a candidate explains. */
 interface Signature {
   /** Residual without it minus residual with it, sigma. */
@@ -620,6 +746,23 @@ interface Suggested {
   replaces: string[];
   /** The term as it is written into a model file. */
   model_file: string;
+}
+
+/** What the files of an upload are. */
+type Surveyed = FoundCampaign | ProposedCampaign;
+
+/** A column that is taken for a signal. */
+interface TakenColumn {
+  /** Key of the signal. */
+  channel: string;
+  /** Name of the column. */
+  column: string;
+  /** Its unit; `null` if the log states it. */
+  unit: string | null;
+  /** The reason. */
+  reason: string;
+  /** Whether name or unit is an assumption. */
+  assumed: boolean;
 }
 
 /** Errors of all runs with a parameter set by hand, sigma. */

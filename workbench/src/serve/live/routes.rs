@@ -112,7 +112,7 @@ async fn step(State(sessions): Known, Json(wanted): Json<Advance>) -> Answer {
     let session = find(&sessions, &wanted.session)?;
     let orders = checked(wanted.orders)?;
     if let Some(what) = wrong_advance(wanted.milliseconds) {
-        return Err(Refusal::wrong(json!({ "what": what })));
+        return Err(Refusal::wrong(what));
     }
     let pending = {
         let session = lock(&session);
@@ -130,7 +130,7 @@ async fn step(State(sessions): Known, Json(wanted): Json<Advance>) -> Answer {
 /// The orders, if all values are in range.
 fn checked(orders: Orders) -> Result<Orders, Refusal> {
     match orders.fault() {
-        Some(what) => Err(Refusal::wrong(json!({ "what": what }))),
+        Some(what) => Err(Refusal::wrong(what)),
         None => Ok(orders),
     }
 }
