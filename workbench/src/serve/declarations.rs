@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use hitch_closed_loop::driven::Described;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value};
 
 use super::first::Sheet;
+use super::live::answer::LoopAnswer;
 use super::own_term::FormulaElements;
 use super::routes::Checked;
 use super::upload::surveyed::Surveyed;
@@ -78,6 +80,8 @@ fn views(generator: &mut SchemaGenerator) {
     root::<Sheet>(generator);
     root::<FormulaElements>(generator);
     root::<Checked>(generator);
+    root::<Described>(generator);
+    root::<LoopAnswer>(generator);
     root::<RowPlot<Vec<f64>, Samples>>(generator);
 }
 

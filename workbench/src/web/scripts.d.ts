@@ -58,6 +58,10 @@ interface Answers {
   signature: Signatures;
   preview: SimulatedChannels;
   "preview/all": TriedRuns;
+  "loop/describe": Described;
+  "loop/open": Described;
+  "loop/step": LoopAnswer;
+  "loop/write": { changed: number; words: number };
   formulas: FormulaElements;
   check: Checked;
   "first/sheet": Sheet;

@@ -79,6 +79,18 @@ interface Checked {
   fault: Fault | null;
 }
 
+/** The connection to an ECU on the bus. */
+interface Connection {
+  /** Whether the adapter is connected. */
+  connected: boolean;
+  /** Why there are no data; `null` if they arrive. */
+  problem: string | null;
+  /** The connection in one sentence. */
+  text: string;
+  /** Reported position, percent, 0 lowest; `null` if its sensor is bad. */
+  position_percent: number | null;
+}
+
 /** The constants of the first model. */
 interface Constants {
   /** Names of those that a fit can hold. */
@@ -107,6 +119,48 @@ interface CurveChange {
   low: number;
   /** Largest change. */
   high: number;
+}
+
+/** The description of a machine. */
+interface Described {
+  /** What runs the controller: `host`, `ecu` or `bus`. */
+  source: string;
+  /** Whether the page may write a calibration to it. */
+  may_write: boolean;
+  /** Angle at which the hitches begin, degree. */
+  angle_deg: number;
+  /** Ends of the swing, degree. */
+  swing_deg: [number, number];
+  /** Range of loads, kg. */
+  loads_kg: [number, number];
+  /** Range of oil temperatures, C. */
+  oils_c: [number, number];
+  /** Longest advance, ms. */
+  longest_ms: number;
+  /** The linkage. */
+  linkage: DrawnLinkage;
+  /** Whether both calibrations are equal. */
+  equal: boolean;
+  /** Maps of the first and of the rebuilt calibration. */
+  maps: [ValveMaps, ValveMaps];
+}
+
+/** The linkage over its swing. */
+interface DrawnLinkage {
+  /** Names of the joints. */
+  joints: [string, string, string, string, string, string];
+  /** Stroke of the cylinder, m. */
+  stroke_m: number;
+  /** Positions at equally spaced angles. */
+  positions: DrawnPosition[];
+}
+
+/** A position of the linkage. */
+interface DrawnPosition {
+  /** Rocker angle, degree. */
+  angle_deg: number;
+  /** Its joints, m; x to the rear, y up. */
+  joints: [([number, number]), ([number, number]), ([number, number]), ([number, number]), ([number, number]), ([number, number])];
 }
 
 /** Texts of an effect. */
@@ -234,6 +288,36 @@ interface GroupingTitle {
   title: string;
 }
 
+/** Samples of a hitch since the last answer, and its present state; `null` for a sample that is missing. */
+interface HitchView {
+  /** Times of the samples, s. */
+  time_s: number[];
+  /** Rocker angle, degree. */
+  angle_deg: (number | null)[];
+  /** Rocker angle as its sensor shows it, degree. */
+  shown_deg: (number | null)[];
+  /** Current of the lift valve, A. */
+  lift_a: (number | null)[];
+  /** Current of the lowering valve, A. */
+  lower_a: (number | null)[];
+  /** Cylinder pressure, bar. */
+  cylinder_bar: (number | null)[];
+  /** Pump pressure, bar. */
+  pump_bar: (number | null)[];
+  /** State in short. */
+  state: string;
+  /** State as sentences. */
+  state_text: string;
+  /** Fault in short. */
+  fault: string | null;
+  /** Fault in words. */
+  fault_text: string | null;
+  /** What the safety envelope found. */
+  trip_text: string | null;
+  /** Figures of the last move. */
+  move: MoveFigures | null;
+}
+
 /** Names of the lines of a run. */
 interface LineNames {
   /** Of the first model. */
@@ -288,6 +372,18 @@ interface LocatedWorstStretch {
   stretch: WorstStretch;
 }
 
+/** The hitches after an advance. */
+interface LoopAnswer {
+  /** Both hitches of the simulation, or the one of an ECU. */
+  loops: HitchView[];
+  /** Simulated time over computing time, of a simulation. */
+  speed?: number;
+  /** Whether an emulated ECU is behind real time. */
+  behind?: boolean;
+  /** The connection to an ECU on the bus. */
+  bus?: Connection;
+}
+
 /** A column: a measured channel, with the error of the model. */
 interface MeasuredChannel {
   /** Key. */
@@ -315,6 +411,21 @@ interface ModelMap {
   channels: MeasuredChannel[];
   /** The cells. */
   cells: LocatedCell[];
+}
+
+/** Figures of a move. */
+interface MoveFigures {
+  /** Angle at the start, degree. */
+  from_deg: number;
+  /** Set point, degree. */
+  to_deg: number;
+  /** Largest overshoot of the set point since its last change, degree. */
+  overshoot_deg: number;
+  /** Angle minus set point at rest, degree; `None` while the hitch moves. */
+  error_deg: number | null;
+  /** Time from the last change of the set point until the angle stays within half a degree of it, s; `None` if it is not
+   * there. */
+  arrived_s: number | null;
 }
 
 /** A parameter with its interval. */
@@ -787,6 +898,26 @@ interface TunedCalibration {
   figures: FigureRow[];
   /** The changed values. */
   changes: Change[];
+}
+
+/** Flow over current of a valve, up to its largest current. */
+interface ValveMap {
+  /** Currents, A. */
+  current_a: number[];
+  /** Flows, l/min. */
+  flow_lpm: number[];
+  /** Current at which it opens, A. */
+  threshold_a: number;
+  /** Largest flow, l/min. */
+  saturation_lpm: number;
+}
+
+/** Maps of both valves. */
+interface ValveMaps {
+  /** Of the lift valve. */
+  lift: ValveMap;
+  /** Of the lowering valve. */
+  lower: ValveMap;
 }
 
 /** A step of the way. */
