@@ -1,13 +1,15 @@
 //! Change of the error from one model to another on the same campaign.
 
 use hitch_plant::Channel;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::worst::stretches;
 use super::{Cell, Evaluated, Grouping};
 
 /// Error of two models in one cell.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "CellChange")]
 pub struct Change {
     /// Grouping of the samples.
     pub by: Grouping,
@@ -22,7 +24,7 @@ pub struct Change {
 }
 
 /// The stretch of time that contributes most to the change of a cell.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ChangedStretch {
     /// Key of the channel.
     pub channel: &'static str,

@@ -16,7 +16,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use cell::Cell;
-pub use change::{Change, changes, largest_change_in_part};
+pub use change::{Change, ChangedStretch, changes, largest_change_in_part};
 pub use current_groups::CurrentGroups;
 pub use evaluated::Evaluated;
 pub use groups::Grouping;

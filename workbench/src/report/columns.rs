@@ -1,6 +1,6 @@
 //! Samples as compact JSON.
 
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::scale::extent;
 
@@ -16,12 +16,21 @@ const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz
 /// The mark of a missing sample.
 const MISSING: char = '-';
 
+/// Samples in a compact form.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Column {
+    /// Their step, in the unit of the values.
+    pub step: f64,
+    /// Their differences in steps, as text.
+    pub differences: String,
+}
+
 /// Samples as integers in steps of 1, 2 or 5 times a power of ten, at most `resolution` (in the unit of the values), each as difference to
 /// the one before. An invalid resolution is replaced by a hundred thousandth of the extent.
 ///
 /// The differences are one text: variable-length quantities in base 64, as in the source maps of ECMA-426. A missing sample
 /// is `-`.
-pub fn column(values: &[f64], resolution: f64) -> Value {
+pub fn column(values: &[f64], resolution: f64) -> Column {
     let (low, high) = extent(values.iter().copied()).unwrap_or((0.0, 0.0));
     let least = SHARE * (high - low).max(SHARE * high.abs().max(low.abs()));
     let wanted = if resolution.is_finite() && resolution > 0.0 {
@@ -45,11 +54,11 @@ pub fn column(values: &[f64], resolution: f64) -> Value {
         push(&mut differences, number.saturating_sub(last));
         last = number;
     }
-    json!({ "step": step, "differences": differences })
+    Column { step, differences }
 }
 
 /// Samples of a signal that is plotted in a row: `resolution` as in [`column`], but not finer than a plot shows.
-pub fn plotted_column(values: &[f64], resolution: f64) -> Value {
+pub fn plotted_column(values: &[f64], resolution: f64) -> Column {
     let (low, high) = extent(values.iter().copied()).unwrap_or((0.0, 0.0));
     column(values, resolution.max(OF_ROW * (high - low)))
 }
@@ -81,11 +90,10 @@ mod tests {
     use super::*;
 
     /// As the script of the report does.
-    fn decoded(column: &Value) -> Vec<Option<f64>> {
-        let step = column["step"].as_f64().unwrap();
+    fn decoded(column: &Column) -> Vec<Option<f64>> {
         let (mut sum, mut number, mut shift) = (0_i128, 0_i128, 0);
         let mut decoded = Vec::new();
-        for letter in column["differences"].as_str().unwrap().bytes() {
+        for letter in column.differences.bytes() {
             if char::from(letter) == MISSING {
                 decoded.push(None);
                 continue;
@@ -99,7 +107,7 @@ mod tests {
                 } else {
                     number >> 1
                 };
-                decoded.push(Some(sum as f64 * step));
+                decoded.push(Some(sum as f64 * column.step));
                 (number, shift) = (0, 0);
             }
         }
@@ -150,8 +158,7 @@ mod tests {
             (&[1e300, -1e300], 1e-3),
         ] {
             let column = column(values, resolution);
-            let step = column["step"].as_f64().unwrap();
-            assert!(step.is_finite() && step > 0.0, "{values:?}");
+            assert!(column.step.is_finite() && column.step > 0.0, "{values:?}");
             assert_eq!(decoded(&column).len(), values.len());
         }
         let kept = decoded(&column(&[5.0, 5.0], 0.0));

@@ -2,10 +2,12 @@
 
 use hitch_plant::Channel;
 use maud::{Markup, html};
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
+use super::data::Data;
+use super::map_view::{GroupingTitle, Located, MeasuredChannel};
 use super::page::folded;
-use super::plotted::embedded;
 use super::run_views::State;
 use crate::comparison::{Cell, Comparison, Evaluated, Grouping, WorstStretch, worst_by_part};
 
@@ -14,9 +16,9 @@ pub fn error_map(before: State<'_>, after: Option<State<'_>>) -> Markup {
     let compared = |(model, evaluated): State<'_>| Comparison::of(evaluated, model);
     let of_after = after.map(compared);
     let of_before = compared(before);
-    let mut models = vec![state("before", &of_before, before.1)];
+    let mut models = vec![ModelMap::new("before", &of_before, before.1)];
     if let (Some(comparison), Some((_, evaluated))) = (&of_after, after) {
-        models.push(state("after", comparison, evaluated));
+        models.push(ModelMap::new("after", comparison, evaluated));
     }
     html! {
         section #map.live-only aria-labelledby="map-title" {
@@ -26,7 +28,7 @@ pub fn error_map(before: State<'_>, after: Option<State<'_>>) -> Markup {
             div #models role="group" aria-label="Model of the map" {}
             div #groupings role="group" aria-label="Rows of the map" {}
             div #cells.scroll {}
-            (embedded(&json!(models)))
+            @if let Some(data) = Data::of(&models) { (data) }
         }
         div.replaced { (grids(&of_before, of_after.as_ref())) }
     }
@@ -48,54 +50,50 @@ fn table(comparison: &Comparison, by: Grouping) -> Markup {
     folded(&grid.table(), grid.rows.len())
 }
 
-/// A map in the form of the page of `hitch serve`; each cell with its worst second.
-fn state(name: &str, comparison: &Comparison, evaluated: &Evaluated) -> Value {
-    let grouping = |by: Grouping| json!({ "by": by, "title": by.title() });
-    let measured = |channel: &Channel| evaluated.experiment.measures(*channel);
-    let channel = |channel: Channel| {
-        json!({
-            "key": channel.key(),
-            "title": channel.title(),
-            "error": evaluated.fit.channel_error(channel.index()),
-        })
-    };
-    let channels = Channel::ALL.into_iter().filter(measured).map(channel);
-    let channels: Vec<Value> = channels.collect();
-    let mut cells = Vec::new();
-    for by in Grouping::ALL {
-        for channel in Channel::ALL.into_iter().filter(measured) {
-            let worst = worst_by_part(evaluated, by, channel);
-            let own = |cell: &&Cell| cell.by == by && cell.channel == channel.key();
-            for cell in comparison.cells.iter().filter(own) {
-                let place = worst.iter().find(|(part, ..)| *part == cell.part);
-                cells.push(shown(cell, place.map(|(_, run, stretch)| (*run, stretch))));
-            }
-        }
-    }
-    json!({
-        "name": name,
-        "groupings": Grouping::ALL.map(grouping),
-        "channels": channels,
-        "cells": cells,
-    })
+/// The error map of a model; each cell with its worst second.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ModelMap {
+    /// Which model it is.
+    pub name: &'static str,
+    /// Groupings of the cells.
+    pub groupings: Vec<GroupingTitle>,
+    /// The measured channels.
+    pub channels: Vec<MeasuredChannel>,
+    /// The cells.
+    pub cells: Vec<LocatedCell>,
 }
 
-fn shown(cell: &Cell, place: Option<(usize, &WorstStretch)>) -> Value {
-    let worst = place.map(|(run, stretch)| {
-        json!({
-            "run": run,
-            "channel": stretch.channel,
-            "from_s": stretch.from_s,
-            "to_s": stretch.to_s,
-            "error": stretch.error,
-        })
-    });
-    json!({
-        "by": cell.by,
-        "part": cell.part,
-        "channel": cell.channel,
-        "error": cell.error,
-        "samples": cell.samples,
-        "worst": worst,
-    })
+/// A cell of an error map.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct LocatedCell {
+    /// The cell.
+    #[serde(flatten)]
+    pub cell: Cell,
+    /// The stretch with its largest error.
+    pub worst: Option<Located<WorstStretch>>,
+}
+
+impl ModelMap {
+    fn new(name: &'static str, comparison: &Comparison, evaluated: &Evaluated) -> Self {
+        let mut cells = Vec::new();
+        for by in Grouping::ALL {
+            for channel in Channel::ALL {
+                let worst = worst_by_part(evaluated, by, channel);
+                let own = |cell: &&Cell| cell.by == by && cell.channel == channel.key();
+                for cell in comparison.cells.iter().filter(own) {
+                    let place = worst.iter().find(|(part, ..)| *part == cell.part);
+                    cells.push(LocatedCell {
+                        cell: cell.clone(),
+                        worst: place.map(|(_, run, stretch)| (*run, stretch.clone()).into()),
+                    });
+                }
+            }
+        }
+        Self {
+            name,
+            groupings: GroupingTitle::all(),
+            channels: MeasuredChannel::all(evaluated),
+            cells,
+        }
+    }
 }

@@ -62,32 +62,29 @@ function samples({ step, differences }) {
   return values;
 }
 
-/** The map of a model.
- * @typedef {ErrorMap & {name: string}} Model */
-
 /** Draws the map of a model, and the buttons for the models.
- * @param {Model[]} models
- * @param {Model} shown */
+ * @param {ModelMap[]} models
+ * @param {ModelMap} shown */
 function drawModels(models, shown) {
-  const button = (/** @type {Model} */ model) => element("button", { type: "button", "aria-pressed": model === shown,
+  const button = (/** @type {ModelMap} */ model) => element("button", { type: "button", "aria-pressed": model === shown,
     onclick: () => drawModels(models, model) }, `Model ${model.name}`);
   byId("models").replaceChildren(...(models.length > 1 ? models.map(button) : []));
   drawErrors(shown, (cell) => visit(shown, cell));
 }
 
 /** Shows the run and the second in which a cell is worst.
- * @param {Model} model
- * @param {Cell} cell */
+ * @param {ModelMap} model
+ * @param {LocatedCell} cell */
 async function visit(model, cell) {
   if (!cell.worst) return;
   const run = /** @type {HTMLDetailsElement} */ (byId(`run-${cell.worst.run}`));
   run.open = true;
   const channel = model.channels.find((one) => one.key === cell.channel);
-  const { from_s, to_s, error } = cell.worst;
+  const { stretch } = cell.worst;
   /** @type {HTMLElement} */ (run.querySelector("output")).textContent =
-    `Worst for ${channel?.title ?? cell.channel}, ${cell.part}, model ${model.name}: ${from_s.toFixed(1)} to ${to_s.toFixed(1)} s, ${sigmas(error)} σ`;
+    `Worst for ${channel?.title ?? cell.channel}, ${cell.part}, model ${model.name}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ${sigmas(stretch.error)} σ`;
   const plotted = /** @type {HTMLElement} */ (run.querySelector(".plotted"));
-  if (plotted.querySelector(".plot")) await show(plotted, cell.worst);
+  if (plotted.querySelector(".plot")) await show(plotted, stretch);
   run.scrollIntoView();
   /** @type {HTMLElement} */ (run.querySelector("summary")).focus({ preventScroll: true });
 }

@@ -1,13 +1,14 @@
 //! Measured and simulated channels, run by run.
 
 use maud::{Markup, html};
-use serde_json::{Value, json};
 
 use super::chart::{Chart, Line, Stroke, legend};
-use super::columns::{TIME_S, column, plotted_column};
+use super::columns::{Column, TIME_S, column, plotted_column};
+use super::data::Data;
 use super::envelope::envelope;
 use super::plotted::plotted;
 use super::run_view::{ChannelView, RunView};
+use crate::web::plot::{LineNames, RunChannel, RunPlot};
 
 /// Number of runs that are initially unfolded.
 const OPEN_RUNS: usize = 2;
@@ -36,7 +37,7 @@ pub fn runs(views: &[RunView]) -> Markup {
 }
 
 /// The data of the plots of some runs, the worst first: all samples of the first ones, what a screen shows of the others.
-fn plots(sorted: &[&RunView]) -> Vec<Option<Value>> {
+fn plots(sorted: &[&RunView]) -> Vec<Option<Data>> {
     let (mut whole, mut all) = (0, 0);
     let plot = |view: &&RunView| {
         if all > MOST_BYTES {
@@ -48,8 +49,8 @@ fn plots(sorted: &[&RunView]) -> Vec<Option<Value>> {
         } else {
             envelope(view, COLUMNS)
         };
-        let data = data(&drawn);
-        all += data.to_string().len();
+        let data = data(&drawn)?;
+        all += data.bytes();
         (all <= MOST_BYTES).then_some(data)
     };
     sorted.iter().map(plot).collect()
@@ -65,7 +66,7 @@ fn by_error(views: &[RunView]) -> Vec<&RunView> {
     sorted
 }
 
-fn run(view: &RunView, open: bool, data: Option<&Value>) -> Markup {
+fn run(view: &RunView, open: bool, data: Option<&Data>) -> Markup {
     let picture = html! {
         (legend(&entries(view)))
         div.grid { @for channel in &view.channels { (figure(view, channel)) } }
@@ -99,36 +100,37 @@ fn entries(view: &RunView) -> Vec<(Stroke, &'static str)> {
 }
 
 /// The run in the form of the page of `hitch serve`.
-fn data(view: &RunView) -> Value {
-    let names = if is_changed(view) {
-        json!({ "first": "model before", "simulated": "model after" })
-    } else {
-        json!({})
-    };
-    json!({
-        "names": names,
-        "time_s": column(&view.time_s, TIME_S),
-        "lift_current_a": column(&view.lift_current_a, CURRENT_A),
-        "lower_current_a": column(&view.lower_current_a, CURRENT_A),
-        "channels": view.channels.iter().map(channel_data).collect::<Vec<_>>(),
+fn data(view: &RunView) -> Option<Data> {
+    let names = is_changed(view).then_some(LineNames {
+        first: Some("model before"),
+        simulated: Some("model after"),
+        second: None,
+    });
+    Data::of(&RunPlot {
+        names,
+        time_s: column(&view.time_s, TIME_S),
+        lift_current_a: column(&view.lift_current_a, CURRENT_A),
+        lower_current_a: column(&view.lower_current_a, CURRENT_A),
+        channels: view.channels.iter().map(channel_data).collect(),
     })
 }
 
-fn channel_data(view: &ChannelView) -> Value {
+fn channel_data(view: &ChannelView) -> RunChannel<Column> {
     let samples = |samples: &[f64]| plotted_column(samples, OF_NOISE * view.noise);
     let last = view.after.as_ref().unwrap_or(&view.before);
     let first = view.after.as_ref().map(|_| &view.before);
-    json!({
-        "key": view.channel.key(),
-        "title": view.channel.title(),
-        "unit": view.channel.unit(),
-        "error": last.error,
-        "measured": samples(&view.measured),
-        "simulated": samples(&last.samples),
-        "residual": column(&last.residuals, RESIDUAL),
-        "first": first.map(|first| samples(&first.samples)),
-        "first_residual": first.map(|first| column(&first.residuals, RESIDUAL)),
-    })
+    RunChannel {
+        key: view.channel.key(),
+        title: view.channel.title(),
+        unit: view.channel.unit(),
+        error: last.error,
+        measured: samples(&view.measured),
+        simulated: samples(&last.samples),
+        residual: column(&last.residuals, RESIDUAL),
+        first: first.map(|first| samples(&first.samples)),
+        first_residual: first.map(|first| column(&first.residuals, RESIDUAL)),
+        second: None,
+    }
 }
 
 fn figure(view: &RunView, channel: &ChannelView) -> Markup {
@@ -226,12 +228,11 @@ mod tests {
         let views: Vec<RunView> = (0..30).map(|index| long_run(&mut random, index)).collect();
         let sorted: Vec<&RunView> = views.iter().collect();
         let drawn = plots(&sorted);
-        let whole = |data: &Option<Value>| *data == Some(super::data(&views[0]));
-        assert!(whole(&drawn[0]));
-        let last = drawn[29].as_ref().unwrap();
+        let whole = |data: &Option<Data>| *data == super::data(&views[0]);
+        assert!(drawn[0].is_some() && whole(&drawn[0]));
         let reduced = envelope(&views[29], COLUMNS);
         assert_eq!(reduced.time_s.len(), 2 * COLUMNS);
-        assert_eq!(*last, data(&reduced));
+        assert_eq!(drawn[29], data(&reduced));
     }
 
     #[test]

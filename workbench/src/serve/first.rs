@@ -10,8 +10,9 @@ use axum::{Json, Router};
 use hitch_input::source_file::SourceFile;
 use hitch_model_file::{Template, Valve};
 use hitch_plant::Model;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 use super::refusal::Refusal;
 use super::request::{Answer, Known, Of, blocking, find, lock};
@@ -90,28 +91,48 @@ async fn named(State(sessions): Known, Json(wanted): Json<Named>) -> Answer {
     exchange(session, model).await
 }
 
+/// The questions of data sheets.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Sheet {
+    /// The questions in their order.
+    questions: Vec<Question>,
+}
+
+/// A question, with the value of the first model.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Question {
+    /// Name of the constant.
+    name: String,
+    /// The question.
+    question: String,
+    /// The value, as in a model file.
+    value: String,
+}
+
 /// The questions of data sheets, with the values of the first model.
-async fn sheet(State(sessions): Known, Query(of): Query<Of>) -> Answer {
+async fn sheet(State(sessions): Known, Query(of): Query<Of>) -> Answer<Sheet> {
     let session = find(&sessions, &of.session)?;
     let model = lock(&session).subject().model.clone();
     let template = Template::of(&model.name, &model);
     let constant = |(name, question): &(&str, &str)| {
         // A machine does not have every constant.
         let value = template.get(name).ok()?;
-        Some(json!({ "name": name, "question": question, "value": value }))
+        Some(Question {
+            name: (*name).to_owned(),
+            question: (*question).to_owned(),
+            value,
+        })
     };
-    let mut questions: Vec<Value> = QUESTIONS.iter().filter_map(constant).collect();
+    let mut questions: Vec<Question> = QUESTIONS.iter().filter_map(constant).collect();
     for (valve, title) in VALVES {
         let ends = data_sheet::ends(template.curve(valve));
-        questions.extend(ENDS.iter().zip(ends).map(|((key, what), value)| {
-            json!({
-                "name": format!("{}.{key}", valve.table()),
-                "question": format!("{title}, {what}"),
-                "value": format!("{value:.3}"),
-            })
+        questions.extend(ENDS.iter().zip(ends).map(|((key, what), value)| Question {
+            name: format!("{}.{key}", valve.table()),
+            question: format!("{title}, {what}"),
+            value: format!("{value:.3}"),
         }));
     }
-    Ok(Json(json!({ "questions": questions })))
+    Ok(Json(Sheet { questions }))
 }
 
 /// The answers to changed questions, in the order of the questions.

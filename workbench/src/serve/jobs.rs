@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hitch_identification::data::limit::Limit;
-use serde_json::{Value, json};
 use tokio::sync::broadcast;
 
 use super::refusal::Refusal;
@@ -13,6 +12,8 @@ use super::request::lock;
 use super::session::Job;
 use super::sessions::Shared;
 use super::tasks::{Outcome, Ready, Task};
+use super::views::candidate::ShownCandidate;
+use super::views::message::Message;
 use crate::arguments::search::limit;
 
 /// Panic payload that unwinds a cancelled computation.
@@ -22,20 +23,25 @@ struct Cancelled;
 pub struct Reporter {
     cancelled: Arc<AtomicBool>,
     keeps_best: bool,
-    messages: broadcast::Sender<Value>,
+    messages: broadcast::Sender<Message>,
 }
 
 impl Reporter {
     /// Reports the current stage, the completed fraction (0 to 1, `None` if unknown) and the error.
     pub fn progress(&self, text: &str, fraction: Option<f64>, error: Option<f64>) {
-        self.tell(
-            json!({ "kind": "progress", "text": text, "fraction": fraction, "error": error }),
-        );
+        self.tell(Message::Progress {
+            text: text.to_owned(),
+            fraction,
+            error,
+        });
     }
 
     /// Reports an evaluated effect.
-    pub fn candidate(&self, candidate: &Value, fraction: f64) {
-        self.tell(json!({ "kind": "candidate", "candidate": candidate, "fraction": fraction }));
+    pub fn candidate(&self, candidate: ShownCandidate, fraction: f64) {
+        self.tell(Message::Candidate {
+            candidate,
+            fraction,
+        });
     }
 
     /// The limit of a search that keeps its best result: a time, s, and until it is cancelled.
@@ -52,7 +58,7 @@ impl Reporter {
         }
     }
 
-    fn tell(&self, message: Value) {
+    fn tell(&self, message: Message) {
         if self.cancelled.load(Ordering::Relaxed) && !self.keeps_best {
             // Unwinds to the start of the computation without a panic message.
             resume_unwind(Box::new(Cancelled));
@@ -101,15 +107,14 @@ fn finish(session: &Shared, reporter: &Reporter, outcome: std::thread::Result<Ou
     }
     open.job = None;
     let message = match outcome {
-        Ok(Outcome::Failed(text)) => json!({ "kind": "failed", "text": text }),
+        Ok(Outcome::Failed(text)) => Message::Failed { text },
         Ok(outcome) => {
             outcome.apply(&mut open);
-            json!({ "kind": "done" })
+            Message::Done
         }
-        Err(_) => json!({
-            "kind": "failed",
-            "text": "The computation failed. The model is unchanged; try another effect.",
-        }),
+        Err(_) => Message::Failed {
+            text: "The computation failed. The model is unchanged; try another effect.".to_owned(),
+        },
     };
     let _ = open.messages.send(message);
 }

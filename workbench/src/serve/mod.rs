@@ -3,6 +3,9 @@
 //! The browser draws; every number is computed here. Each tab has its own `session::Session`. Long computations run as
 //! jobs, and the tab follows their progress through Server-Sent Events.
 mod assets;
+#[cfg(test)]
+mod declarations;
+mod fault;
 mod first;
 mod guard;
 mod jobs;

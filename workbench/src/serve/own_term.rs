@@ -5,8 +5,10 @@ use hitch_effects::expression::operation::FUNCTIONS;
 use hitch_effects::expression::{ParameterDefinition, Part, Term, TermDefinition, TermError};
 use hitch_plant::Place;
 use hitch_plant::hooks::signals::SIGNALS;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::fault::Fault;
 
 /// Content of the form.
 #[derive(Debug, Clone, Deserialize)]
@@ -30,7 +32,7 @@ struct ParameterForm {
 
 impl TermForm {
     /// Checks the definition; returns its fault.
-    pub fn check(self) -> Option<Value> {
+    pub fn check(self) -> Option<Fault> {
         let formula = self.formula.clone();
         let checked = self.definition();
         match checked.map(Term::new) {
@@ -43,14 +45,14 @@ impl TermForm {
     /// The effect of the definition.
     ///
     /// # Errors
-    /// The fault of the definition, as JSON for the page.
-    pub fn define(self) -> Result<&'static TermEffect, Value> {
+    /// The fault of the definition, for the page.
+    pub fn define(self) -> Result<&'static TermEffect, Fault> {
         let formula = self.formula.clone();
         TermEffect::define(self.definition()?).map_err(|error| fault(&formula, &error))
     }
 
-    fn definition(self) -> Result<TermDefinition, Value> {
-        let unknown = || json!({ "what": format!("unknown place {:?}", self.place) });
+    fn definition(self) -> Result<TermDefinition, Fault> {
+        let unknown = || format!("unknown place {:?}", self.place);
         let place = Place::named(&self.place).ok_or_else(unknown)?;
         let parameters = self.parameters.into_iter().enumerate();
         Ok(TermDefinition {
@@ -60,17 +62,21 @@ impl TermForm {
             formula: self.formula,
             parameters: parameters
                 .map(|(index, row)| row.definition(index))
-                .collect::<Result<_, Value>>()?,
+                .collect::<Result<_, Fault>>()?,
         })
     }
 }
 
 impl ParameterForm {
-    fn definition(self, index: usize) -> Result<ParameterDefinition, Value> {
+    fn definition(self, index: usize) -> Result<ParameterDefinition, Fault> {
         let name = self.name;
         let number = |key: &str, value: Option<f64>| {
             let what = format!("{key} of parameter {} is not a number", index + 1);
-            value.ok_or_else(|| json!({ "what": what, "hint": "write a number" }))
+            value.ok_or_else(|| Fault {
+                what,
+                hint: Some("write a number".to_owned()),
+                ..Fault::default()
+            })
         };
         let start = number("start", self.start)?;
         let null = match index {
@@ -90,7 +96,7 @@ impl ParameterForm {
 }
 
 /// The fault of a definition; for a formula with its column, in characters from 1.
-fn fault(formula: &str, error: &TermError) -> Value {
+fn fault(formula: &str, error: &TermError) -> Fault {
     let column = match error.part {
         Part::Formula(byte) => {
             let before = formula.char_indices().take_while(|(at, _)| *at < byte);
@@ -98,21 +104,53 @@ fn fault(formula: &str, error: &TermError) -> Value {
         }
         _ => None,
     };
-    json!({ "what": error.what, "hint": error.hint, "column": column })
+    Fault {
+        column,
+        what: error.what.clone(),
+        hint: Some(error.hint.clone()),
+        ..Fault::default()
+    }
 }
 
-/// The elements of formulas: places, signals and functions.
-pub fn offered() -> Value {
-    let places = Place::all().map(
-        |place| json!({ "name": place.id(), "unit": place.unit(), "meaning": place.meaning() }),
-    );
-    let signals = SIGNALS.iter().map(
-        |signal| json!({ "name": signal.name, "unit": signal.unit, "meaning": signal.meaning }),
-    );
-    let functions = FUNCTIONS.iter().map(|(_, _, meaning)| *meaning);
-    json!({
-        "places": places.collect::<Vec<_>>(),
-        "signals": signals.collect::<Vec<_>>(),
-        "functions": functions.collect::<Vec<_>>(),
-    })
+/// The elements of formulas.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FormulaElements {
+    /// Where a term acts.
+    places: Vec<FormulaElement>,
+    /// What it can depend on.
+    signals: Vec<FormulaElement>,
+    /// Functions, each with its meaning.
+    functions: Vec<&'static str>,
+}
+
+/// A place or a signal.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FormulaElement {
+    /// Its name in formulas.
+    name: &'static str,
+    /// Its unit.
+    unit: &'static str,
+    /// Its meaning.
+    meaning: &'static str,
+}
+
+impl FormulaElements {
+    /// All of them.
+    pub fn all() -> Self {
+        let place = |place: Place| FormulaElement {
+            name: place.id(),
+            unit: place.unit(),
+            meaning: place.meaning(),
+        };
+        let signals = SIGNALS.iter().map(|signal| FormulaElement {
+            name: signal.name,
+            unit: signal.unit,
+            meaning: signal.meaning,
+        });
+        Self {
+            places: Place::all().map(place).collect(),
+            signals: signals.collect(),
+            functions: FUNCTIONS.iter().map(|(_, _, meaning)| *meaning).collect(),
+        }
+    }
 }

@@ -1,17 +1,17 @@
 //! Why a request of the page is refused.
 
+use super::fault::Fault;
 use crate::error::Error;
 use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use hitch_closed_loop::driven::MachineError;
-use serde_json::Value;
 use serde_json::json;
 
 /// Refusal of a request, with the fault that the page shows.
 pub(super) struct Refusal {
     status: StatusCode,
-    fault: Value,
+    fault: Fault,
 }
 
 impl Refusal {
@@ -19,15 +19,15 @@ impl Refusal {
     pub(super) fn of(status: StatusCode, what: &str) -> Self {
         Self {
             status,
-            fault: json!({ "what": what }),
+            fault: what.to_owned().into(),
         }
     }
 
     /// A request with invalid content.
-    pub(super) fn wrong(fault: Value) -> Self {
+    pub(super) fn wrong(fault: impl Into<Fault>) -> Self {
         Self {
             status: StatusCode::UNPROCESSABLE_ENTITY,
-            fault,
+            fault: fault.into(),
         }
     }
 
@@ -45,29 +45,12 @@ impl From<MachineError> for Refusal {
 
 impl From<Error> for Refusal {
     fn from(error: Error) -> Self {
-        Self {
-            status: StatusCode::UNPROCESSABLE_ENTITY,
-            fault: fault(&error),
-        }
+        Self::wrong(&error)
     }
 }
 
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
         (self.status, Json(json!({ "fault": self.fault }))).into_response()
-    }
-}
-
-/// A fault, with file and position if a file is its cause.
-fn fault(error: &Error) -> Value {
-    match error {
-        Error::Input(input) => json!({
-            "file": input.file.display().to_string(),
-            "line": input.place.map(|place| place.line),
-            "column": input.place.map(|place| place.column),
-            "what": input.what,
-            "hint": input.hint,
-        }),
-        other => json!({ "what": other.to_string() }),
     }
 }

@@ -16,7 +16,7 @@ use std::sync::{Arc, MutexGuard, PoisonError};
 pub(super) type Known = State<Arc<Sessions>>;
 
 /// A view, or the refusal of a request.
-pub(super) type Answer = Result<Json<Value>, Refusal>;
+pub(super) type Answer<T = Value> = Result<Json<T>, Refusal>;
 
 /// The session of a request.
 #[derive(Debug, Deserialize)]

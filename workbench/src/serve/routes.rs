@@ -9,22 +9,29 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_identification::estimate::Estimate;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use tokio_stream::wrappers::BroadcastStream;
 use tokio_stream::{Stream, StreamExt};
 
-use super::own_term::TermForm;
+use super::fault::Fault;
+use super::own_term::{FormulaElements, TermForm};
 use super::parameters::moved;
 use super::session::Step;
 use super::sessions::Sessions;
 use super::source::Subject;
 use super::tasks::Task;
-use super::{assets, first, jobs, live, own_term, saving, second_routes, upload, views};
-use crate::comparison::worst_in_part;
+use super::views::run::RunView;
+use super::views::state::{Begun, State as SessionState};
+use super::views::trial::{RunParts, Signature, TriedRuns};
+use super::{assets, first, jobs, live, saving, second_routes, upload};
+use crate::comparison::{WorstStretch, worst_in_part};
 use crate::error::Error;
+use crate::report::map_view::Located;
 use crate::serve::refusal::Refusal;
 use crate::serve::request::{Answer, Known, Of, OfCell, blocking, find, lock};
+use crate::web::plot::{Samples, SimulatedChannel};
 
 /// All routes, protected by the token.
 pub fn routes() -> Router<Arc<Sessions>> {
@@ -63,17 +70,18 @@ fn named(name: &str) -> Response {
     assets::file(name).unwrap_or_else(|| StatusCode::NOT_FOUND.into_response())
 }
 
-async fn begin(State(sessions): Known) -> Answer {
+async fn begin(State(sessions): Known) -> Answer<Begun> {
     let begun = blocking(move || {
         let (id, session) = sessions.begin()?;
-        Ok::<_, Error>(json!({ "session": id, "state": views::state(&lock(&session)) }))
+        let state = SessionState::of(&lock(&session));
+        Ok::<_, Error>(Begun { session: id, state })
     });
     Ok(Json(begun.await??))
 }
 
-async fn state(State(sessions): Known, Query(of): Query<Of>) -> Answer {
+async fn state(State(sessions): Known, Query(of): Query<Of>) -> Answer<SessionState> {
     let session = find(&sessions, &of.session)?;
-    let view = blocking(move || views::state(&lock(&session)));
+    let view = blocking(move || SessionState::of(&lock(&session)));
     Ok(Json(view.await?))
 }
 
@@ -83,22 +91,19 @@ struct OfRun {
     run: usize,
 }
 
-async fn run(State(sessions): Known, Query(of): Query<OfRun>) -> Answer {
+async fn run(State(sessions): Known, Query(of): Query<OfRun>) -> Answer<RunView> {
     let session = find(&sessions, &of.session)?;
-    let view = blocking(move || {
-        let session = lock(&session);
-        views::run(&session, of.run)
-    });
+    let view = blocking(move || RunView::of(&lock(&session), of.run));
     let no_run = || Refusal::of(StatusCode::NOT_FOUND, "the run is not in the campaign");
     Ok(Json(view.await?.ok_or_else(no_run)?))
 }
 
-async fn worst(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
+async fn worst(State(sessions): Known, Query(of): Query<OfCell>) -> Answer<Located<WorstStretch>> {
     let session = find(&sessions, &of.session)?;
     let evaluated = Arc::clone(&lock(&session).present().evaluated);
     let worst = move || worst_in_part(&evaluated, of.by, &of.part, of.channel()?);
-    let (run, stretch) = blocking(worst).await?.ok_or_else(OfCell::no_data)?;
-    Ok(Json(json!({ "run": run, "stretch": stretch })))
+    let found = blocking(worst).await?.ok_or_else(OfCell::no_data)?;
+    Ok(Json(found.into()))
 }
 
 /// A candidate of the ranking, and the run to show its signature in.
@@ -109,7 +114,10 @@ struct OfCandidate {
     effect: String,
 }
 
-async fn signature(State(sessions): Known, Query(of): Query<OfCandidate>) -> Answer {
+async fn signature(
+    State(sessions): Known,
+    Query(of): Query<OfCandidate>,
+) -> Answer<RunParts<Signature>> {
     let session = find(&sessions, &of.session)?;
     let (subject, step, ranking) = {
         let session = lock(&session);
@@ -121,7 +129,7 @@ async fn signature(State(sessions): Known, Query(of): Query<OfCandidate>) -> Ans
     };
     let unranked = || Refusal::conflict("the model has changed; rank the effects again");
     let ranking = ranking.ok_or_else(unranked)?;
-    let view = blocking(move || views::signature(&subject, &step, &ranking, &of.effect, of.run));
+    let view = blocking(move || RunParts::signature(&subject, &step, &ranking, &of.effect, of.run));
     let none = || Refusal::of(StatusCode::NOT_FOUND, "the run or candidate does not exist");
     Ok(Json(view.await?.ok_or_else(none)?))
 }
@@ -163,21 +171,21 @@ impl Trial {
 async fn preview(
     State(sessions): Known,
     Json(TrialOfRun { run, trial }): Json<TrialOfRun>,
-) -> Answer {
+) -> Answer<RunParts<SimulatedChannel<Samples>>> {
     let (subject, step, estimate) = trial.applied(&sessions)?;
-    let view = blocking(move || views::preview(&subject, &step, &estimate, run));
+    let view = blocking(move || RunParts::preview(&subject, &step, &estimate, run));
     let none = || Refusal::conflict("the run does not exist");
     Ok(Json(view.await?.ok_or_else(none)?))
 }
 
-async fn preview_all(State(sessions): Known, Json(trial): Json<Trial>) -> Answer {
+async fn preview_all(State(sessions): Known, Json(trial): Json<Trial>) -> Answer<TriedRuns> {
     let (subject, step, estimate) = trial.applied(&sessions)?;
-    let view = blocking(move || views::preview_all(&subject, &step, estimate));
+    let view = blocking(move || TriedRuns::of(&subject, &step, estimate));
     Ok(Json(view.await?))
 }
 
-async fn formulas() -> Json<Value> {
-    Json(own_term::offered())
+async fn formulas() -> Json<FormulaElements> {
+    Json(FormulaElements::all())
 }
 
 /// A term to look at.
@@ -186,10 +194,17 @@ struct Draft {
     term: TermForm,
 }
 
+/// The answer about a term.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Checked {
+    /// What is wrong with it.
+    fault: Option<Fault>,
+}
+
 /// What is wrong with a term; nothing if it is right.
-async fn check(Json(draft): Json<Draft>) -> Answer {
+async fn check(Json(draft): Json<Draft>) -> Answer<Checked> {
     let fault = blocking(move || draft.term.check()).await?;
-    Ok(Json(json!({ "fault": fault })))
+    Ok(Json(Checked { fault }))
 }
 
 #[derive(Debug, Deserialize)]

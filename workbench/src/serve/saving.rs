@@ -13,7 +13,6 @@ use super::refusal::Refusal;
 use super::request::{Known, Of, blocking, find, lock};
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
-use super::views;
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::explanation::{self, Found};
@@ -36,7 +35,7 @@ async fn model(State(sessions): Known, Query(of): Query<Of>) -> Result<Response,
     let session = find(&sessions, &of.session)?;
     let mut session = lock(&session);
     session.saved = Some(Arc::clone(&session.present().evaluated));
-    Ok(attached(TOML, "model.toml", views::model_file(&session)))
+    Ok(attached(TOML, "model.toml", model_file(&session)))
 }
 
 async fn tuned(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
@@ -72,6 +71,17 @@ fn attached(kind: &'static str, name: &str, content: impl IntoResponse) -> Respo
         ),
     ];
     (headers, content).into_response()
+}
+
+/// The present model as a file, with the steps that led to it.
+fn model_file(session: &Session) -> String {
+    let mut text = String::from("# Made with hitch serve:\n");
+    for (number, step) in session.steps()[..=session.at()].iter().enumerate() {
+        let error = step.evaluated.fit.error();
+        let title = step.title.replace(char::is_control, " ");
+        text += &format!("# {number}. {title}: error {error:.2} sigma\n");
+    }
+    text + &hitch_model_file::to_toml(&session.rebuilt())
 }
 
 /// The calibration file of the present model.
@@ -110,7 +120,7 @@ fn archived(session: &Shared) -> Result<Vec<u8>, Error> {
         let mut session = lock(session);
         session.saved = Some(Arc::clone(&session.present().evaluated));
         (
-            views::model_file(&session),
+            model_file(&session),
             calibration_text(&session)?,
             session.present_tuned().cloned(),
         )

@@ -16,7 +16,8 @@ use super::request::{Answer, Known, Of, OfCell, blocking, find, lock};
 use super::session::Session;
 use super::sessions::Sessions;
 use super::tasks::Task;
-use crate::comparison::largest_change_in_part;
+use crate::comparison::{ChangedStretch, largest_change_in_part};
+use crate::report::map_view::Located;
 use crate::serve::second::Second;
 
 /// All routes of the second model.
@@ -70,7 +71,10 @@ async fn close(State(sessions): Known, Json(of): Json<Of>) -> Answer {
 }
 
 /// The stretch that contributes most to the change of a cell.
-async fn largest(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
+async fn largest(
+    State(sessions): Known,
+    Query(of): Query<OfCell>,
+) -> Answer<Located<ChangedStretch>> {
     let session = find(&sessions, &of.session)?;
     let (second, present) = {
         let session = lock(&session);
@@ -81,8 +85,8 @@ async fn largest(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
         let [before, after] = second.ordered(&present);
         largest_change_in_part(before, after, of.by, &of.part, of.channel()?)
     });
-    let (run, stretch) = found.await?.ok_or_else(OfCell::no_data)?;
-    Ok(Json(json!({ "run": run, "stretch": stretch })))
+    let found = found.await?.ok_or_else(OfCell::no_data)?;
+    Ok(Json(found.into()))
 }
 
 fn none() -> Refusal {

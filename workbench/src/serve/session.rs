@@ -10,7 +10,6 @@ use hitch_identification::explanation::{diagnosis, explain};
 use hitch_identification::selection::candidate::Candidate;
 use hitch_identification::suggestion::Suggestion;
 use hitch_plant::{Effect, Model, full_name};
-use serde_json::Value;
 use tokio::sync::broadcast;
 
 use super::live::TabLoop;
@@ -18,6 +17,7 @@ use super::second::Second;
 use super::source::Subject;
 use super::tuned::TunedFor;
 use super::upload::Upload;
+use super::views::message::Message;
 use crate::comparison::Evaluated;
 use crate::explanation::{self, rebuilt};
 
@@ -121,7 +121,7 @@ pub struct Session {
     /// The files that are being opened.
     pub upload: Option<Arc<Upload>>,
     /// Sends messages to the tab.
-    pub messages: broadcast::Sender<Value>,
+    pub messages: broadcast::Sender<Message>,
 }
 
 impl Session {

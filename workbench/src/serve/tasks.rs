@@ -10,7 +10,6 @@ use hitch_identification::estimate::Estimate;
 use hitch_identification::suggestion::Suggestion;
 use hitch_plant::{Effect, Model, full_name};
 use serde::Deserialize;
-use serde_json::json;
 
 use super::own_term::TermForm;
 use super::parameters::{held, moved};
@@ -213,7 +212,7 @@ impl Ready {
             Task::Tune { .. } => {
                 let (low, high) = (TRIALS.start(), TRIALS.end());
                 let what = format!("the number of candidates is {low} to {high}");
-                return Err(Refusal::wrong(json!({ "what": what })));
+                return Err(Refusal::wrong(what));
             }
             Task::Fit => What::Fit,
             Task::Add { effect } => What::Add(new_effect(session, &effect)?),
@@ -293,7 +292,7 @@ fn check_search(search: &Search) -> Result<(), Refusal> {
     } else {
         let (low, high) = (BUDGETS_S.start(), BUDGETS_S.end());
         let what = format!("the time limit is {low} to {high} s");
-        Err(Refusal::wrong(json!({ "what": what })))
+        Err(Refusal::wrong(what))
     }
 }
 

@@ -3,10 +3,11 @@
 //! `docs/GLOSSARY.md` defines the terms; these say what a reader of a result needs.
 
 use hitch_plant::{Dynamics, Model};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A term and what it means.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Word {
     /// The term as it is written beside a figure.
     pub term: &'static str,

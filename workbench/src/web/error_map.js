@@ -14,8 +14,9 @@ let grouping = "regime";
  *   sum: (channel: H) => string}} Look */
 
 /** Draws the map of the errors of a model; `visit` is called with the selected cell.
- * @param {ErrorMap} state
- * @param {(cell: Cell) => void} visit */
+ * @template {Cell} C
+ * @param {ErrorMap<C>} state
+ * @param {(cell: C) => void} visit */
 export function drawErrors(state, visit) {
   drawMap(state, visit, ERRORS);
 }

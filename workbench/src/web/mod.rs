@@ -1,6 +1,7 @@
 //! Files that the page of `hitch serve` and the reports share, and the plotting library.
 mod bundle;
 pub mod heat_table;
+pub mod plot;
 
 pub use bundle::bundle;
 

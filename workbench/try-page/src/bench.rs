@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use hitch_closed_loop::driven::{
-    Machine, MachineError, Models, Orders, Pair, described, wrong_advance,
+    Described, Machine, MachineError, Models, Orders, Pair, wrong_advance,
 };
 use hitch_controller_host::calibration_file;
 use hitch_input::input_error::InputError;
@@ -117,7 +117,8 @@ impl Bench {
 
 /// The description of the machine at the lever.
 fn view(machine: &Machine, orders: &Orders) -> Result<Value, Fault> {
-    described(machine, machine.start_deg(orders), "host", false)
+    Described::new(machine, machine.start_deg(orders), "host", false)
+        .map(|described| json!(described))
         .map_err(|error| Fault(format!("the linkage cannot be drawn: {error}")))
 }
 

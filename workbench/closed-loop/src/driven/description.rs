@@ -4,7 +4,8 @@ use hitch_plant::{LinkageError, Model};
 use hitch_quantities::ValidCalibration;
 use hitch_quantities::calibration::valve_table::ValveTable;
 use hitch_quantities::units::MilliAmp;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::machine::Machine;
 use super::orders::{LOADS_KG, LONGEST_MS, OILS_C};
@@ -12,35 +13,104 @@ use super::orders::{LOADS_KG, LONGEST_MS, OILS_C};
 /// Drawn positions of the linkage over its swing; the page interpolates between them with less than 0.2 mm of error.
 const POSITIONS: u32 = 64;
 
-/// The description of a machine whose hitches begin at an angle, degree. `source` names what runs the controller: `host`, `ecu`
-/// or `bus`; the page may write a calibration to it if `may_write`.
-///
-/// # Errors
-/// If the linkage cannot be assembled.
-pub fn described(
-    machine: &Machine,
-    angle_deg: f64,
-    source: &str,
-    may_write: bool,
-) -> Result<Value, LinkageError> {
-    let (low_rad, high_rad) = machine.plant.linkage().swing_rad();
-    let (initial, rebuilt) = (&machine.initial, &machine.rebuilt);
-    Ok(json!({
-        "source": source,
-        "may_write": may_write,
-        "angle_deg": angle_deg,
-        "swing_deg": [low_rad.to_degrees(), high_rad.to_degrees()],
-        "loads_kg": [LOADS_KG.start(), LOADS_KG.end()],
-        "oils_c": [OILS_C.start(), OILS_C.end()],
-        "longest_ms": LONGEST_MS,
-        "linkage": linkage(&machine.plant)?,
-        "equal": initial == rebuilt,
-        "maps": [valve_maps(initial), valve_maps(rebuilt)],
-    }))
+/// The description of a machine.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Described {
+    /// What runs the controller: `host`, `ecu` or `bus`.
+    pub source: &'static str,
+    /// Whether the page may write a calibration to it.
+    pub may_write: bool,
+    /// Angle at which the hitches begin, degree.
+    pub angle_deg: f64,
+    /// Ends of the swing, degree.
+    pub swing_deg: [f64; 2],
+    /// Range of loads, kg.
+    pub loads_kg: [f64; 2],
+    /// Range of oil temperatures, C.
+    pub oils_c: [f64; 2],
+    /// Longest advance, ms.
+    pub longest_ms: u32,
+    /// The linkage.
+    pub linkage: DrawnLinkage,
+    /// Whether both calibrations are equal.
+    pub equal: bool,
+    /// Maps of the first and of the rebuilt calibration.
+    pub maps: [ValveMaps; 2],
+}
+
+/// The linkage over its swing.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct DrawnLinkage {
+    /// Names of the joints.
+    pub joints: [&'static str; 6],
+    /// Stroke of the cylinder, m.
+    pub stroke_m: f64,
+    /// Positions at equally spaced angles.
+    pub positions: Vec<DrawnPosition>,
+}
+
+/// A position of the linkage.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct DrawnPosition {
+    /// Rocker angle, degree.
+    pub angle_deg: f64,
+    /// Its joints, m; x to the rear, y up.
+    pub joints: [[f64; 2]; 6],
+}
+
+/// Maps of both valves.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ValveMaps {
+    /// Of the lift valve.
+    pub lift: ValveMap,
+    /// Of the lowering valve.
+    pub lower: ValveMap,
+}
+
+/// Flow over current of a valve, up to its largest current.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ValveMap {
+    /// Currents, A.
+    pub current_a: Vec<f64>,
+    /// Flows, l/min.
+    pub flow_lpm: Vec<f64>,
+    /// Current at which it opens, A.
+    pub threshold_a: f64,
+    /// Largest flow, l/min.
+    pub saturation_lpm: f64,
+}
+
+impl Described {
+    /// The description of a machine whose hitches begin at an angle, degree. `source` names what runs the controller: `host`,
+    /// `ecu` or `bus`; the page may write a calibration to it if `may_write`.
+    ///
+    /// # Errors
+    /// If the linkage cannot be assembled.
+    pub fn new(
+        machine: &Machine,
+        angle_deg: f64,
+        source: &'static str,
+        may_write: bool,
+    ) -> Result<Self, LinkageError> {
+        let (low_rad, high_rad) = machine.plant.linkage().swing_rad();
+        let (initial, rebuilt) = (&machine.initial, &machine.rebuilt);
+        Ok(Self {
+            source,
+            may_write,
+            angle_deg,
+            swing_deg: [low_rad.to_degrees(), high_rad.to_degrees()],
+            loads_kg: [*LOADS_KG.start(), *LOADS_KG.end()],
+            oils_c: [*OILS_C.start(), *OILS_C.end()],
+            longest_ms: LONGEST_MS,
+            linkage: linkage(&machine.plant)?,
+            equal: initial == rebuilt,
+            maps: [initial, rebuilt].map(valve_maps),
+        })
+    }
 }
 
 /// Joints at equally spaced angles, in m; x to the rear, y up.
-fn linkage(model: &Model) -> Result<Value, LinkageError> {
+fn linkage(model: &Model) -> Result<DrawnLinkage, LinkageError> {
     let (low_rad, high_rad) = model.linkage().swing_rad();
     let position = |index: u32| {
         let angle_rad = low_rad + (high_rad - low_rad) * f64::from(index) / f64::from(POSITIONS);
@@ -53,23 +123,23 @@ fn linkage(model: &Model) -> Result<Value, LinkageError> {
             joints.pivot,
             joints.hitch_point,
         ];
-        Ok(json!({
-            "angle_deg": angle_rad.to_degrees(),
-            "joints": points.map(|point| [point.x, point.y]),
-        }))
+        Ok(DrawnPosition {
+            angle_deg: angle_rad.to_degrees(),
+            joints: points.map(|point| [point.x, point.y]),
+        })
     };
     let positions = (0..=POSITIONS)
         .map(position)
         .collect::<Result<Vec<_>, _>>()?;
-    Ok(json!({
-        "joints": ["A", "B", "D", "E", "F", "G"],
-        "stroke_m": model.constants().cylinder.stroke_m,
-        "positions": positions,
-    }))
+    Ok(DrawnLinkage {
+        joints: ["A", "B", "D", "E", "F", "G"],
+        stroke_m: model.constants().cylinder.stroke_m,
+        positions,
+    })
 }
 
 /// Flow over current of both valves, up to the largest current of each.
-fn valve_maps(calibration: &ValidCalibration) -> Value {
+fn valve_maps(calibration: &ValidCalibration) -> ValveMaps {
     let map = |table: &ValveTable, limit: MilliAmp| {
         let points = table.used().iter();
         let pairs = points.map(|point| {
@@ -87,18 +157,18 @@ fn valve_maps(calibration: &ValidCalibration) -> Value {
             .chain(pairs)
             .chain(ends)
             .collect();
-        json!({
-            "current_a": all.iter().map(|pair| pair[0]).collect::<Vec<_>>(),
-            "flow_lpm": all.iter().map(|pair| pair[1]).collect::<Vec<_>>(),
-            "threshold_a": threshold_a,
-            "saturation_lpm": saturated_lpm,
-        })
+        ValveMap {
+            current_a: all.iter().map(|pair| pair[0]).collect(),
+            flow_lpm: all.iter().map(|pair| pair[1]).collect(),
+            threshold_a,
+            saturation_lpm: saturated_lpm,
+        }
     };
     let safety = &calibration.safety;
-    json!({
-        "lift": map(&calibration.lift, safety.lift_current_limit),
-        "lower": map(&calibration.lower, safety.lower_current_limit),
-    })
+    ValveMaps {
+        lift: map(&calibration.lift, safety.lift_current_limit),
+        lower: map(&calibration.lower, safety.lower_current_limit),
+    }
 }
 
 #[cfg(test)]
@@ -109,20 +179,20 @@ mod tests {
     #[test]
     fn a_valve_map_ends_at_the_largest_current_of_its_valve() {
         let mut calibration = hitch_quantities::Calibration::nominal();
-        let last_a = |calibration: &hitch_quantities::Calibration, valve: &str| {
+        let last_a = |calibration: &hitch_quantities::Calibration,
+                      valve: fn(&ValveMaps) -> &ValveMap| {
             let valid = calibration.clone().sealed().validate().expect("valid");
             let maps = valve_maps(&valid);
-            let currents = maps[valve]["current_a"].as_array().expect("currents");
-            currents[currents.len() - 1].as_f64().expect("a current")
+            *valve(&maps).current_a.last().expect("currents")
         };
-        assert_eq!(last_a(&calibration, "lift"), 3.5);
+        assert_eq!(last_a(&calibration, |maps| &maps.lift), 3.5);
         calibration.safety.lower_current_limit = MilliAmp(4_000);
-        assert_eq!(last_a(&calibration, "lower"), 4.0);
+        assert_eq!(last_a(&calibration, |maps| &maps.lower), 4.0);
         for point in &mut calibration.lift.points {
             point.current = MilliAmp(point.current.0 * 2 / 5);
         }
         calibration.safety.lift_current_limit = MilliAmp(1_600);
-        assert_eq!(last_a(&calibration, "lift"), 1.6);
+        assert_eq!(last_a(&calibration, |maps| &maps.lift), 1.6);
     }
 
     #[test]
@@ -134,8 +204,8 @@ mod tests {
         constants.linkage_table = Some(table.expect("a table"));
         let model = nominal.with_constants(constants).expect("a linkage");
         let drawn = linkage(&model).expect("a sketch");
-        let positions = drawn["positions"].as_array().expect("positions");
-        let height_m = |at: usize| positions[at]["joints"][5][1].as_f64().expect("a height");
+        let positions = drawn.positions;
+        let height_m = |at: usize| positions[at].joints[5][1];
         let risen_m = height_m(positions.len() - 1) - height_m(0);
         assert!((risen_m - 1.1).abs() < 1e-6, "{risen_m}");
     }

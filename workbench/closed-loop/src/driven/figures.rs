@@ -1,6 +1,7 @@
 //! Figures of the last move while it runs.
 
 use hitch_quantities::{Outputs, State};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::closed_loop::{ARRIVED_DEG, Sample};
@@ -13,7 +14,7 @@ const PAUSE_S: f64 = 0.5;
 const REST_S: f64 = 0.3;
 
 /// Figures of a move.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct MoveFigures {
     /// Angle at the start, degree.
     from_deg: f64,

@@ -2,11 +2,10 @@
 
 use hitch_plant::Model;
 use hitch_quantities::{Inputs, ValidCalibration};
-use serde_json::Value;
 
 use super::orders::Orders;
 use super::sensor_fault::Wiring;
-use super::strip::Strip;
+use super::strip::{HitchView, Strip};
 use crate::closed_loop::ClosedLoop;
 
 /// Seed of the noise; both hitches have the same.
@@ -53,7 +52,7 @@ impl<'m> Hitch<'m> {
     }
 
     /// Advances by `steps` milliseconds; returns the samples and the state at the end.
-    pub fn advance(&mut self, orders: &Orders, steps: u32) -> Value {
+    pub fn advance(&mut self, orders: &Orders, steps: u32) -> HitchView {
         self.set_conditions(orders);
         let mut samples = Vec::new();
         for _ in 0..steps {

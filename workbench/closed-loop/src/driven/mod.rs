@@ -13,9 +13,10 @@ mod sensor_fault;
 mod strip;
 mod words;
 
-pub use description::described;
+pub use description::Described;
+pub use figures::MoveFigures;
 pub use machine::{Machine, MachineError, Models, calibration};
 pub use orders::{Button, LONGEST_MS, Orders, wrong_advance};
 pub use pair::Pair;
 pub use sensor_fault::{Kind, Sensor, SensorFault};
-pub use strip::Strip;
+pub use strip::{HitchView, Strip};

@@ -1,10 +1,9 @@
 //! Both hitches of a page.
 
-use serde_json::Value;
-
 use super::hitch::Hitch;
 use super::machine::Machine;
 use super::orders::Orders;
+use super::strip::HitchView;
 
 /// A hitch with the calibration of the initial model, and one with that of the present model.
 pub struct Pair<'m>([Hitch<'m>; 2]);
@@ -21,7 +20,7 @@ impl<'m> Pair<'m> {
     }
 
     /// Advances both by `steps` milliseconds; returns the samples and the state at the end of each.
-    pub fn advance(&mut self, orders: &Orders, steps: u32) -> [Value; 2] {
+    pub fn advance(&mut self, orders: &Orders, steps: u32) -> [HitchView; 2] {
         self.0.each_mut().map(|hitch| hitch.advance(orders, steps))
     }
 }

@@ -2,14 +2,47 @@
 
 use hitch_quantities::Outputs;
 use hitch_quantities::units::MilliAmp;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
-use super::figures::Moves;
+use super::figures::{MoveFigures, Moves};
 use super::words;
 use crate::closed_loop::Sample;
 
 /// Distance of the samples of an answer, ms.
 const SAMPLE_MS: u64 = 10;
+
+/// Samples of a hitch since the last answer, and its present state; `null` for a sample that is missing.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct HitchView {
+    /// Times of the samples, s.
+    pub time_s: Vec<f64>,
+    /// Rocker angle, degree.
+    pub angle_deg: Vec<Option<f64>>,
+    /// Rocker angle as its sensor shows it, degree.
+    pub shown_deg: Vec<Option<f64>>,
+    /// Current of the lift valve, A.
+    pub lift_a: Vec<Option<f64>>,
+    /// Current of the lowering valve, A.
+    pub lower_a: Vec<Option<f64>>,
+    /// Cylinder pressure, bar.
+    pub cylinder_bar: Vec<Option<f64>>,
+    /// Pump pressure, bar.
+    pub pump_bar: Vec<Option<f64>>,
+    /// State in short.
+    pub state: String,
+    /// State as sentences.
+    pub state_text: String,
+    /// Fault in short.
+    pub fault: Option<String>,
+    /// Fault in words.
+    pub fault_text: Option<String>,
+    /// What the safety envelope found.
+    pub trip_text: Option<&'static str>,
+    /// Figures of the last move.
+    #[serde(rename = "move")]
+    pub last_move: Option<MoveFigures>,
+}
 
 /// The state of a hitch, and its moves.
 #[derive(Debug, Default)]
@@ -27,26 +60,29 @@ impl Strip {
     }
 
     /// Samples and the present state.
-    pub fn view(&self, samples: &[Sample]) -> Value {
+    pub fn view(&self, samples: &[Sample]) -> HitchView {
         let each = |value: fn(&Sample) -> Option<f64>| -> Vec<Option<f64>> {
             samples.iter().map(value).collect()
         };
         let outputs = &self.outputs;
-        json!({
-            "time_s": each(|sample| Some(sample.time_s)),
-            "angle_deg": each(|sample| Some(sample.angle_deg)),
-            "shown_deg": each(|sample| sample.inputs.rocker_angle.map(|angle| f64::from(angle.0) * 1e-3)),
-            "lift_a": each(|sample| ampere(sample.inputs.lift_current)),
-            "lower_a": each(|sample| ampere(sample.inputs.lower_current)),
-            "cylinder_bar": each(|sample| Some(sample.cylinder_pressure_bar)),
-            "pump_bar": each(|sample| Some(sample.pump_pressure_bar)),
-            "state": outputs.state.name(),
-            "state_text": words::state(outputs.state),
-            "fault": outputs.fault.map(|fault| fault.name()),
-            "fault_text": outputs.fault.map(words::fault),
-            "trip_text": outputs.trip.map(words::trip),
-            "move": self.moves.last(),
-        })
+        HitchView {
+            time_s: samples.iter().map(|sample| sample.time_s).collect(),
+            angle_deg: each(|sample| Some(sample.angle_deg)),
+            shown_deg: each(|sample| {
+                let angle = sample.inputs.rocker_angle;
+                angle.map(|angle| f64::from(angle.0) * 1e-3)
+            }),
+            lift_a: each(|sample| ampere(sample.inputs.lift_current)),
+            lower_a: each(|sample| ampere(sample.inputs.lower_current)),
+            cylinder_bar: each(|sample| Some(sample.cylinder_pressure_bar)),
+            pump_bar: each(|sample| Some(sample.pump_pressure_bar)),
+            state: outputs.state.name().to_owned(),
+            state_text: words::state(outputs.state).to_owned(),
+            fault: outputs.fault.map(|fault| fault.name().to_owned()),
+            fault_text: outputs.fault.map(|fault| words::fault(fault).to_owned()),
+            trip_text: outputs.trip.map(words::trip),
+            last_move: self.moves.last(),
+        }
     }
 }
 

@@ -25,7 +25,7 @@ const CHANGED = "the model has changed";
 /** The model of the simulation; another one needs a new simulation. */
 let model = "";
 /** Description of the machine.
- * @type {any} */
+ * @type {Described | null} */
 let machine = null;
 /** @type {ReturnType<typeof drawLinkage> | null} */
 let move = null;
@@ -37,7 +37,7 @@ let visible = false;
  * @type {(error: unknown) => void} */
 let say = () => {};
 /** Who answers the requests: the server, or a module inside the page.
- * @typedef {{post: (path: string, body: Record<string, unknown>) => Promise<any>, address: (path: string) => string}} Transport */
+ * @typedef {{post: <P extends string>(path: P, body: Record<string, unknown>) => Promise<Answer<P>>, address: (path: string) => string}} Transport */
 /** @type {Transport} */
 let transport;
 /** State and fault of each hitch, as last reported. */
@@ -208,23 +208,23 @@ async function step(milliseconds) {
 }
 
 /** Shows an answer.
- * @param {any} answer
+ * @param {LoopAnswer} answer
  * @param {any} given */
 function show(answer, given) {
   // An ECU has the place of the rebuilt calibration; what belongs to the first one is hidden.
   const isSingle = answer.loops.length === 1;
   const loops = isSingle ? [answer.loops[0], answer.loops[0]] : answer.loops;
   addSamples(loops, given.lever_deg);
-  const [first, second] = loops.map((/** @type {any} */ loop) => loop.angle_deg[loop.angle_deg.length - 1] ?? null);
+  const [first, second] = loops.map((loop) => loop.angle_deg[loop.angle_deg.length - 1] ?? null);
   if (first !== null && second !== null && move) move(given.lever_deg, first, second, given.load_kg);
   showFigures(loops, given.lever_deg);
   if (answer.bus) showBus(answer.bus);
-  loops.forEach((/** @type {any} */ loop, /** @type {number} */ index) => { if (index === 1 || !isSingle) report(loop, index); });
+  loops.forEach((loop, index) => { if (index === 1 || !isSingle) report(loop, index); });
   if (visible) drawChart();
 }
 
 /** Shows the connection to the bus, and why there are no values.
- * @param {{text: string, problem: string | null, position_percent: number | null}} bus */
+ * @param {Connection} bus */
 function showBus({ text, problem, position_percent }) {
   const line = byId("loop-bus");
   const now = problem ?? text;
@@ -234,7 +234,7 @@ function showBus({ text, problem, position_percent }) {
   if (problem !== null) byId("loop-angle-1").textContent = "–";
 }
 
-/** @param {any[]} loops
+/** @param {HitchView[]} loops
  * @param {number} lever_deg */
 function showFigures(loops, lever_deg) {
   const signed = (/** @type {number} */ value) => `${value > 0 ? "+" : ""}${value.toFixed(2)} deg`;
@@ -257,7 +257,7 @@ function showFigures(loops, lever_deg) {
 }
 
 /** Adds a change of state or fault to the list of events. Changes of the moving states are not listed.
- * @param {any} loop
+ * @param {HitchView} loop
  * @param {number} index */
 function report(loop, index) {
   const moves = ["holding", "lifting", "lowering", "settling"].includes(loop.state);

@@ -4,8 +4,6 @@ import { byId, element } from "./dom.js";
 import { faultLines } from "./fault.js";
 import { ask, post, send } from "./server.js";
 
-/** @typedef {{name: string, question: string, value: string}} Question */
-
 /** Questions of the form, with the values that it had.
  * @type {Question[]} */
 let questions = [];
@@ -93,9 +91,7 @@ function drawFitted(fitted) {
 
 /** Draws the form of the data sheet with the values of the first model. */
 async function drawSheet() {
-  /** @type {{questions: Question[]}} */
-  const sheet = await ask("first/sheet");
-  ({ questions } = sheet);
+  ({ questions } = await ask("first/sheet"));
   byId("sheet-rows").replaceChildren(...questions.map(({ name, question, value }) => element("label", { class: "answer" },
     element("span", {}, question), element("input", { value, "data-name": name, autocomplete: "off", spellcheck: "false" }))));
 }

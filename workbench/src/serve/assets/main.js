@@ -28,10 +28,10 @@ let state;
 /** @type {RunView | null} */
 let view = null;
 /** Candidates of a ranking in progress.
- * @type {Candidate[]} */
+ * @type {ShownCandidate[]} */
 let tried = [];
 /** The candidate whose signature is drawn.
- * @type {Effect | null} */
+ * @type {EffectTexts | null} */
 let signed = null;
 /** Errors of a running fit.
  * @type {{fraction: number, error: number}[]} */
@@ -155,7 +155,7 @@ const acts = {
     overlay: previewOverlay,
     all: showTrial,
   })),
-  sign: guarded(inTurn(async (/** @type {Effect} */ effect) => {
+  sign: guarded(inTurn(async (/** @type {EffectTexts} */ effect) => {
     if (!view) return;
     signed = signed?.name === effect.name ? null : effect;
     view = await look(view.run);
@@ -205,7 +205,7 @@ function watch() {
 }
 
 /** Shows the errors of all runs with a parameter set by hand.
- * @param {import("./trial.js").TriedRuns} tried */
+ * @param {TriedRuns} tried */
 function showTrial({ error, channels, runs, cells }) {
   byId("title").textContent = `${state.campaign}: error ${sigmas(error)} σ`;
   tell(`Trial: ${channels.map((one) => `${one.title} ${sigmas(one.error)}`).join(", ")} σ`);

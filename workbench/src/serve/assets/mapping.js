@@ -17,7 +17,7 @@ export function assignment() {
 
 /** Draws a proposal.
  * @param {HTMLElement} at
- * @param {Proposal | {campaign: string, runs: number}} proposal */
+ * @param {Surveyed} proposal */
 export function drawProposal(at, proposal) {
   if ("campaign" in proposal) {
     read = () => ({});

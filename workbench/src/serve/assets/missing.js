@@ -8,7 +8,7 @@ const SIGN = 0.005;
 /** @typedef {(task: Task) => void} Run */
 
 /** Actions of the panel, and the name of the effect whose signature is drawn.
- * @typedef {{run: Run, sign: (effect: Effect) => void, signed: string | undefined}} Acts */
+ * @typedef {{run: Run, sign: (effect: EffectTexts) => void, signed: string | undefined}} Acts */
 
 /** Draws ranking and explanation of a state.
  * @param {State} state
@@ -21,12 +21,12 @@ export function drawMissing(state, acts) {
 }
 
 /** Draws the candidates evaluated so far.
- * @param {Candidate[]} candidates
+ * @param {ShownCandidate[]} candidates
  * @param {Acts} acts
  * @param {State} state
  * @param {string | null} [next] */
 export function drawRanking(candidates, acts, state, next = null) {
-  const shows = (/** @type {Candidate} */ one) => one.explains >= SIGN || (one.confidence ?? 0) >= SIGN;
+  const shows = (/** @type {ShownCandidate} */ one) => one.explains >= SIGN || (one.confidence ?? 0) >= SIGN;
   const seen = candidates.filter(shows);
   const unseen = candidates.filter((one) => !shows(one));
   /** @type {HTMLElement[]} */
@@ -41,8 +41,8 @@ export function drawRanking(candidates, acts, state, next = null) {
 }
 
 /** Adds an evaluated candidate: the best form of each effect, the best effect first.
- * @param {Candidate[]} candidates
- * @param {Candidate} tried */
+ * @param {ShownCandidate[]} candidates
+ * @param {ShownCandidate} tried */
 export function insert(candidates, tried) {
   const others = candidates.filter((one) => one.effect.id !== tried.effect.id);
   const own = candidates.filter((one) => one.effect.id === tried.effect.id);
@@ -58,7 +58,7 @@ export function meaning(state, term) {
   return word ? `${term}: ${word.means}` : "";
 }
 
-/** @param {Candidate} one
+/** @param {ShownCandidate} one
  * @param {Acts} acts
  * @param {State} state */
 function candidate(one, acts, state) {
@@ -82,9 +82,9 @@ function candidate(one, acts, state) {
     ...twins(one), details(one.effect));
 }
 
-/** @param {{parameters: Estimated[]}} one */
+/** @param {{parameters: Parameter[]}} one */
 function parameters(one) {
-  const shown = (/** @type {Estimated} */ p) => {
+  const shown = (/** @type {Parameter} */ p) => {
     const interval = p.low === null || p.high === null ? "" : ` (95 %: ${number(p.low)} to ${number(p.high)})`;
     return `${p.name} ${number(p.value)} ${p.unit}`.trim() + interval;
   };
@@ -97,7 +97,7 @@ function twins(one) {
   return [element("div", { class: "values" }, `On these data, indistinguishable from ${one.indistinguishable.join(", ")}.`)];
 }
 
-/** @param {Effect} effect */
+/** @param {EffectTexts} effect */
 function details(effect) {
   return element("details", {}, element("summary", {}, "Equation, visibility, source"),
     element("code", { class: "equation" }, effect.equation),
@@ -106,7 +106,7 @@ function details(effect) {
     element("p", {}, `Source: ${effect.source}.`));
 }
 
-/** @param {Explained} found
+/** @param {ShownExplanation} found
  * @param {State} state
  * @param {Run} run */
 function explanation(found, state, run) {
@@ -134,7 +134,7 @@ function explanation(found, state, run) {
 }
 
 /** The corrected constants of the base model.
- * @param {Constants} found */
+ * @param {CorrectedConstants} found */
 function constants(found) {
   const percent = (/** @type {number} */ share) => `${share >= 0 ? "+" : ""}${(100 * share).toFixed(1)}`;
   const interval = (/** @type {number | null} */ low, /** @type {number | null} */ high) =>

@@ -68,7 +68,7 @@ export async function drawCourse(state, live) {
   }, { displayModeBar: false, responsive: true });
 }
 
-/** @param {AddedEffect} added
+/** @param {ShownEffect} added
  * @param {number} index
  * @param {Acts} acts */
 function effect(added, index, acts) {
@@ -85,8 +85,8 @@ function effect(added, index, acts) {
  * @type {ReturnType<typeof setTimeout> | undefined} */
 let resting;
 
-/** @param {AddedEffect} added
- * @param {AddedParameter} parameter
+/** @param {ShownEffect} added
+ * @param {ShownParameter} parameter
  * @param {{effect: number, parameter: number}} where
  * @param {Acts} acts */
 function slider(added, parameter, where, acts) {
@@ -116,13 +116,13 @@ function slider(added, parameter, where, acts) {
     element("label", { class: "fix", title: "A fixed parameter keeps its value in fits" }, fix, " fixed"));
 }
 
-/** @param {AddedParameter} parameter */
+/** @param {ShownParameter} parameter */
 function ends(parameter) {
   const reach = SCALES * parameter.scale;
   return [parameter.low ?? parameter.value - reach, parameter.high ?? parameter.value + reach];
 }
 
-/** @param {AddedParameter} parameter */
+/** @param {ShownParameter} parameter */
 function position(parameter) {
   const [low, high] = ends(parameter);
   const share = parameter.by_magnitude ? Math.log(parameter.value / low) / Math.log(high / low)
@@ -130,7 +130,7 @@ function position(parameter) {
   return Math.round(POSITIONS * Math.min(1, Math.max(0, share)));
 }
 
-/** @param {AddedParameter} parameter
+/** @param {ShownParameter} parameter
  * @param {number} place */
 function valueAt(parameter, place) {
   const [low, high] = ends(parameter);

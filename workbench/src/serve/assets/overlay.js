@@ -112,7 +112,7 @@ export async function previewOverlay(trial) {
   const runs = await Promise.all(before.runs.map(async ([run, view]) => {
     const tried = await post("preview", { ...trial, run });
     const all = views.get(run)?.channels ?? [];
-    /** @type {Map<string, RunChannel>} */
+    /** @type {Map<string, SimulatedChannel>} */
     const simulated = new Map(all.map((channel, at) => [channel.key, tried.channels[at]]));
     return /** @type {[number, RunView]} */ ([run,
       { ...view, channels: view.channels.map((channel) => ({ ...channel, ...simulated.get(channel.key) })) }]);

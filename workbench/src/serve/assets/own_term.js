@@ -18,11 +18,11 @@ let resting;
  * @param {(task: Task) => void} run */
 export async function openForm(run) {
   const offered = await ask("formulas");
-  byId("term-place").replaceChildren(...offered.places.map((/** @type {any} */ place) =>
+  byId("term-place").replaceChildren(...offered.places.map((place) =>
     element("option", { value: place.name }, `${place.name}, ${place.unit}: ${place.meaning}`)));
-  const listed = (/** @type {any} */ one) => element("li", {}, element("code", {}, one.name), ` ${one.unit}: ${one.meaning}`);
+  const listed = (/** @type {FormulaElement} */ one) => element("li", {}, element("code", {}, one.name), ` ${one.unit}: ${one.meaning}`);
   byId("term-offered").replaceChildren(element("h3", {}, "Signals"), element("ul", {}, ...offered.signals.map(listed)),
-    element("h3", {}, "Functions"), element("ul", {}, ...offered.functions.map((/** @type {string} */ text) => element("li", {}, text))));
+    element("h3", {}, "Functions"), element("ul", {}, ...offered.functions.map((text) => element("li", {}, text))));
   byId("term-rows").replaceChildren(row(0));
   byId("term").addEventListener("input", () => {
     clearTimeout(resting);

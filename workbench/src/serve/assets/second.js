@@ -127,7 +127,7 @@ function signed(one) {
 }
 
 /** The change of a cell.
- * @type {import("./error_map.js").Look<Change, ComparedChannel>} */
+ * @type {import("./error_map.js").Look<CellChange, ComparedChannel>} */
 const CHANGES = {
   cell: (cell, channel) => {
     const kind = direction(cell);

@@ -22,15 +22,19 @@ export async function begin() {
 }
 
 /** Requests a view.
- * @param {string} path
- * @param {Record<string, string | number>} [query] */
+ * @template {string} P
+ * @param {P} path
+ * @param {Record<string, string | number>} [query]
+ * @returns {Promise<Answer<P>>} */
 export function ask(path, query = {}) {
   return answer(fetch(address(path, query)));
 }
 
 /** Posts an action.
- * @param {string} path
- * @param {Record<string, unknown>} body */
+ * @template {string} P
+ * @param {P} path
+ * @param {Record<string, unknown>} body
+ * @returns {Promise<Answer<P>>} */
 export function post(path, body) {
   const headers = { "Content-Type": "application/json" };
   return answer(fetch(`api/${path}`, { method: "POST", headers, body: JSON.stringify({ session, ...body }) }));

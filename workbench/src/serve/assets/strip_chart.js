@@ -10,7 +10,7 @@ export const SHOWN_S = 25;
 const DRAW_MS = 200;
 
 /** Rows: key of the samples, title, unit, height in px. */
-const ROWS = /** @type {[string, string, string, number][]} */ ([["angle_deg", "rocker angle and set point", "deg", 150],
+const ROWS = /** @type {["angle_deg" | "lift_a" | "lower_a" | "cylinder_bar" | "pump_bar", string, string, number][]} */ ([["angle_deg", "rocker angle and set point", "deg", 150],
   ["lift_a", "lift current", "A", 70], ["lower_a", "lowering current", "A", 70],
   ["cylinder_bar", "cylinder pressure", "bar", 70], ["pump_bar", "pump pressure", "bar", 70]]);
 
@@ -51,7 +51,7 @@ export function showOnly(name, isMeasured) {
 }
 
 /** Adds the samples of an answer.
- * @param {any[]} loops
+ * @param {HitchView[]} loops
  * @param {number} set_point_deg */
 export function addSamples(loops, set_point_deg) {
   const times = loops[0].time_s;

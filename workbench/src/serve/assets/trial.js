@@ -2,9 +2,6 @@
 /** A parameter that is being set by hand: the visible run, the overlaid runs and the errors of all runs follow it. */
 import { post } from "./server.js";
 
-/** Errors of all runs in a trial.
- * @typedef {{error: number, channels: State["channels"], runs: (number | null)[], cells: Cell[]}} TriedRuns */
-
 /** Does something with the latest argument only; what comes during the work is dropped, except the last.
  * @template A
  * @param {(argument: A) => Promise<void>} work

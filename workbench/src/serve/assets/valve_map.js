@@ -4,10 +4,10 @@ import { byId, colour } from "./dom.js";
 import { library } from "./run_plot.js";
 
 /** Valves: key, title, colour. */
-const VALVES = /** @type {[string, string, string][]} */ ([["lift", "lift valve", "lift"], ["lower", "lowering valve", "lower"]]);
+const VALVES = /** @type {[keyof ValveMaps, string, string][]} */ ([["lift", "lift valve", "lift"], ["lower", "lowering valve", "lower"]]);
 
 /** Draws the maps, that of the first model dashed.
- * @param {any[]} maps */
+ * @param {ValveMaps[]} maps */
 export async function drawMaps(maps) {
   const plotly = await library;
   const styles = [{ name: "first", dash: "dash", width: 1.6 }, { name: "rebuilt", dash: "solid", width: 2 }];
@@ -24,7 +24,7 @@ export async function drawMaps(maps) {
     yaxis: { title: { text: "flow, l/min" }, rangemode: "tozero", fixedrange: true, gridcolor: colour("line"),
       zerolinecolor: colour("band") },
   }, { displayModeBar: false, responsive: true });
-  const threshold = (/** @type {any} */ map, /** @type {string} */ key) => map[key].threshold_a.toFixed(3);
+  const threshold = (/** @type {ValveMaps} */ map, /** @type {keyof ValveMaps} */ key) => map[key].threshold_a.toFixed(3);
   byId("valve-text").textContent = VALVES.map(([key, title]) =>
     `Threshold of the ${title}: ${threshold(maps[0], key)} A → ${threshold(maps[1], key)} A.`).join(" ");
 }

@@ -4,13 +4,14 @@ use std::sync::mpsc::{Receiver, Sender, SyncSender, TrySendError, channel, sync_
 use std::time::Instant;
 
 use hitch_closed_loop::driven::{Machine, Orders, Pair};
-use serde_json::{Value, json};
+
+use super::answer::LoopAnswer;
 
 /// An advance of both hitches.
 struct Advance {
     orders: Orders,
     steps: u32,
-    answer: Sender<Value>,
+    answer: Sender<LoopAnswer>,
 }
 
 /// Both hitches of a tab; the thread ends when this is dropped.
@@ -45,7 +46,7 @@ impl Bench {
     ///
     /// # Errors
     /// If the previous one has not ended, or the simulation has failed.
-    pub fn advance(&self, orders: Orders, steps: u32) -> Result<Receiver<Value>, NoAnswer> {
+    pub fn advance(&self, orders: Orders, steps: u32) -> Result<Receiver<LoopAnswer>, NoAnswer> {
         let (answer, pending) = channel();
         let advance = Advance {
             orders,
@@ -68,9 +69,11 @@ fn run(machine: &Machine, orders: &Orders, angle_deg: f64, advances: &Receiver<A
         let loops = pair.advance(&advance.orders, advance.steps);
         let took_s = began.elapsed().as_secs_f64().max(1e-6);
         // The request may have been abandoned.
-        let _ = advance.answer.send(json!({
-            "loops": loops,
-            "speed": f64::from(advance.steps) * 1e-3 / took_s,
-        }));
+        let _ = advance.answer.send(LoopAnswer {
+            loops: loops.into(),
+            speed: Some(f64::from(advance.steps) * 1e-3 / took_s),
+            behind: None,
+            bus: None,
+        });
     }
 }

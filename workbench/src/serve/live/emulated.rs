@@ -9,8 +9,8 @@ use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
 use hitch_closed_loop::driven::{Machine, Orders, Strip};
-use serde_json::{Value, json};
 
+use super::answer::LoopAnswer;
 use super::ecu_bench::EcuBench;
 use crate::ecu::{MachineError, Pace, PaceChange, PoweredEcu, Runner, delivered};
 use hitch_closed_loop::Sample;
@@ -131,7 +131,7 @@ impl RunningEcu {
     ///
     /// # Errors
     /// The reason, if the ECU has ended.
-    pub fn exchange(&self, orders: Orders) -> Result<Value, String> {
+    pub fn exchange(&self, orders: Orders) -> Result<LoopAnswer, String> {
         let mut exchange = self.shared.lock();
         if let Some(reason) = &exchange.ended {
             return Err(reason.clone());
@@ -139,7 +139,12 @@ impl RunningEcu {
         exchange.orders = orders;
         exchange.heard = Instant::now();
         let samples: Vec<Sample> = exchange.samples.drain(..).collect();
-        Ok(json!({ "loops": [exchange.strip.view(&samples)], "behind": exchange.behind }))
+        Ok(LoopAnswer {
+            loops: vec![exchange.strip.view(&samples)],
+            speed: None,
+            behind: Some(exchange.behind),
+            bus: None,
+        })
     }
 }
 

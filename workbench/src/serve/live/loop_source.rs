@@ -6,8 +6,8 @@ use std::sync::mpsc::Receiver;
 use axum::http::StatusCode;
 use hitch_closed_loop::driven::{Machine, Orders};
 use hitch_quantities::ValidCalibration;
-use serde_json::Value;
 
+use super::answer::LoopAnswer;
 use super::bench::{Bench, NoAnswer};
 use super::bus::{BusMonitor, Place};
 use super::emulated::{EcuSocket, NoEcu, RunningEcu};
@@ -46,9 +46,9 @@ enum Kind {
 /// The result of an advance, when it is ready.
 pub enum Pending {
     /// It is ready.
-    Ready(Value),
+    Ready(LoopAnswer),
     /// The simulation computes it.
-    Computed(Receiver<Value>),
+    Computed(Receiver<LoopAnswer>),
 }
 
 impl LoopSource {
@@ -155,7 +155,7 @@ impl Pending {
     ///
     /// # Errors
     /// If the simulation has failed.
-    pub(in crate::serve) fn wait(self) -> Result<Value, Refusal> {
+    pub(in crate::serve) fn wait(self) -> Result<LoopAnswer, Refusal> {
         match self {
             Self::Ready(view) => Ok(view),
             Self::Computed(answer) => answer.recv().map_err(|_| refused(NoAnswer::Failed)),

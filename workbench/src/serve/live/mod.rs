@@ -5,6 +5,7 @@
 //!
 //! With `--ecu`, the ECU runs in real time instead, with the calibration of the present model: `emulated::EcuSocket`.
 //! With `--can`, the page shows an ECU on the bus: `bus::BusMonitor`.
+pub(super) mod answer;
 mod bench;
 mod bus;
 mod ecu_bench;

@@ -7,11 +7,12 @@ use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
-use hitch_closed_loop::driven::{Machine, Orders, described, wrong_advance};
+use hitch_closed_loop::driven::{Described, Machine, Orders, wrong_advance};
 use hitch_controller_host::calibration_file;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::json;
 
+use super::answer::LoopAnswer;
 use super::loop_source::LoopSource;
 use crate::error::Error;
 use crate::serve::refusal::Refusal;
@@ -36,7 +37,7 @@ struct Open {
 }
 
 /// What the page draws before it starts anything.
-async fn describe(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
+async fn describe(State(sessions): Known, Json(wanted): Json<Open>) -> Answer<Described> {
     let session = find(&sessions, &wanted.session)?;
     let orders = checked(wanted.orders)?;
     let models = lock(&session).models();
@@ -48,7 +49,7 @@ async fn describe(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
 }
 
 /// Starts a closed loop at rest with the lever at its position; replaces that of before.
-async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
+async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer<Described> {
     let session = find(&sessions, &wanted.session)?;
     let orders = checked(wanted.orders)?;
     let (of, models, before) = {
@@ -95,8 +96,8 @@ async fn write(State(sessions): Known, Json(of): Json<Of>) -> Answer {
 }
 
 /// The description of a machine whose hitches begin at an angle, degree.
-fn view(machine: &Machine, angle_deg: f64, source: &LoopSource) -> Result<Value, Error> {
-    described(machine, angle_deg, source.name(), source.may_write())
+fn view(machine: &Machine, angle_deg: f64, source: &LoopSource) -> Result<Described, Error> {
+    Described::new(machine, angle_deg, source.name(), source.may_write())
         .map_err(|error| Error::Failed(format!("the linkage cannot be drawn: {error}")))
 }
 
@@ -108,11 +109,11 @@ struct Advance {
     milliseconds: u32,
 }
 
-async fn step(State(sessions): Known, Json(wanted): Json<Advance>) -> Answer {
+async fn step(State(sessions): Known, Json(wanted): Json<Advance>) -> Answer<LoopAnswer> {
     let session = find(&sessions, &wanted.session)?;
     let orders = checked(wanted.orders)?;
     if let Some(what) = wrong_advance(wanted.milliseconds) {
-        return Err(Refusal::wrong(json!({ "what": what })));
+        return Err(Refusal::wrong(what));
     }
     let pending = {
         let session = lock(&session);
@@ -130,7 +131,7 @@ async fn step(State(sessions): Known, Json(wanted): Json<Advance>) -> Answer {
 /// The orders, if all values are in range.
 fn checked(orders: Orders) -> Result<Orders, Refusal> {
     match orders.fault() {
-        Some(what) => Err(Refusal::wrong(json!({ "what": what }))),
+        Some(what) => Err(Refusal::wrong(what)),
         None => Ok(orders),
     }
 }

@@ -24,7 +24,7 @@ use crate::serve::parameters::keep_fixed;
 use crate::serve::second::Second;
 use crate::serve::session::{Explained, Ranking, Step};
 use crate::serve::tuned::TunedFor;
-use crate::serve::views;
+use crate::serve::views::candidate::ShownCandidate;
 
 use super::{Outcome, Ready, Search, What};
 
@@ -143,7 +143,7 @@ impl Ready {
             &|_| {},
             &|candidate, all| {
                 let share = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64;
-                reporter.candidate(&views::tried(&base, candidate), share);
+                reporter.candidate(ShownCandidate::tried(&base, candidate), share);
             },
         );
         reporter.progress("comparing the best candidates", None, None);

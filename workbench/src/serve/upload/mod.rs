@@ -8,6 +8,7 @@ mod incoming;
 mod limits;
 mod proposal;
 mod routes;
+pub mod surveyed;
 
 pub use folder::{Folders, Upload};
 pub use routes::routes;

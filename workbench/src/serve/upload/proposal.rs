@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::survey::{LogColumn, TIMES, check_source, is_bus, run_columns, usual_units};
+use hitch_campaign::survey::{LogColumn, is_bus};
 use hitch_campaign::{Campaign, CampaignError};
 use hitch_plant::Linkage;
-use serde_json::{Value, json};
 
 use crate::error::Error;
 use crate::import::files::columns;
-use crate::import::{Columns, Files, Kind, Mapping, Taken, Undetermined, load_in_name};
+use crate::import::{Columns, Files, Kind, Mapping, Undetermined};
 
 /// Name of a campaign's manifest.
 pub const MANIFEST: &str = "campaign.toml";
@@ -87,27 +86,6 @@ impl Proposal {
         }
         Ok(Self::Logs { files, groups })
     }
-
-    /// The proposal as the page shows it.
-    pub fn view(&self) -> Value {
-        let (files, groups) = match self {
-            Self::Campaign { name, runs } => return json!({ "campaign": name, "runs": runs }),
-            Self::Logs { files, groups } => (files, groups),
-        };
-        let name = files.logs.first().and_then(|log| log.file_stem());
-        let name = name.map_or_else(|| "campaign".into(), |name| name.to_string_lossy());
-        let log = |log: &PathBuf| json!({ "file": file_name(log), "load_kg": load_in_name(log) });
-        let signal = |(name, unit): (&'static str, &'static str)| {
-            let units: Vec<&str> = usual_units(name).collect();
-            json!({ "key": name, "unit": unit, "units": units, "raw": raw_units(name, &units), "title": title(name) })
-        };
-        json!({
-            "name": name,
-            "logs": files.logs.iter().map(log).collect::<Vec<_>>(),
-            "groups": groups.iter().map(Group::view).collect::<Vec<_>>(),
-            "signals": run_columns().map(signal).collect::<Vec<_>>(),
-        })
-    }
 }
 
 /// Checks that a campaign has no files outside its folder: nothing but the upload is read.
@@ -137,15 +115,6 @@ pub fn title(channel: &str) -> &str {
         "oil_temperature_c" => "oil temperature",
         other => other,
     }
-}
-
-/// Units of a sensor whose values become those of a signal by two known points. Times have none.
-fn raw_units(name: &str, units: &[&str]) -> Vec<&'static str> {
-    const RAW: [&str; 5] = ["V", "mV", "mA", "%", "counts"];
-    let has_none = name == TIMES;
-    RAW.into_iter()
-        .filter(|unit| !has_none && !units.contains(unit))
-        .collect()
 }
 
 fn add(groups: &mut Vec<Group>, group: Group) {
@@ -186,59 +155,4 @@ impl Group {
             untold,
         }
     }
-
-    /// Names of the columns that are neither taken nor named in a note.
-    fn unused(&self) -> Vec<&str> {
-        let is_taken = |name: &str| {
-            let mut sources = self.mapping.taken.iter();
-            sources.any(|taken| {
-                let parts = check_source(taken.channel, &taken.source);
-                parts.map_or(taken.source == name, |(known, _)| known == name)
-            })
-        };
-        let is_noted = |name: &str| {
-            let said = format!("left out: \"{name}\"");
-            self.notes.iter().any(|note| note.starts_with(&said))
-        };
-        let names = self.columns.iter().map(|column| column.name.as_str());
-        names
-            .filter(|name| !is_taken(name) && !is_noted(name))
-            .collect()
-    }
-
-    fn view(&self) -> Value {
-        let column = |column: &LogColumn| json!({ "name": column.name, "unit": column.unit });
-        let taken = |taken: &Taken| {
-            let parts = check_source(taken.channel, &taken.source);
-            let (name, unit) = parts.unwrap_or_else(|_| (taken.source.clone(), None));
-            json!({
-                "channel": taken.channel,
-                "column": name,
-                "unit": unit,
-                "reason": taken.reason,
-                "assumed": taken.is_assumed,
-            })
-        };
-        let headings = self
-            .headings
-            .iter()
-            .map(|heading| file_name(Path::new(heading)));
-        json!({
-            "files": headings.collect::<Vec<_>>(),
-            "times": self.kind == Kind::Table,
-            "own_units": self.kind == Kind::Signals,
-            "columns": self.columns.iter().map(column).collect::<Vec<_>>(),
-            "taken": self.mapping.taken.iter().map(taken).collect::<Vec<_>>(),
-            "notes": self.notes,
-            "unused": self.unused(),
-            "untold": self.untold.as_ref().map(|untold| &untold.what),
-        })
-    }
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
 }

@@ -19,6 +19,7 @@ use super::folder::{Unacceptable, Upload, plain_name, too_much};
 use super::incoming::{Lost, receive};
 use super::limits::{LARGEST_ASSIGNMENT, LIFETIME, LONGEST, MOST_BYTES, MOST_FILES};
 use super::proposal::Proposal;
+use super::surveyed::Surveyed;
 use crate::error::Error;
 use crate::serve::refusal::Refusal;
 use crate::serve::request::{Answer, Known, Of, blocking, find, lock};
@@ -48,7 +49,7 @@ struct Begin {
 async fn begin(State(sessions): Known, Json(wanted): Json<Begin>) -> Answer {
     let session = find(&sessions, &wanted.session)?;
     if wanted.files == 0 {
-        return Err(Refusal::wrong(json!({ "what": "there is no file" })));
+        return Err(Refusal::wrong("there is no file".to_owned()));
     }
     if wanted.files > MOST_FILES || wanted.bytes > MOST_BYTES {
         return Err(too_much().into());
@@ -99,7 +100,7 @@ async fn file(
 }
 
 /// The proposed assignment.
-async fn survey(State(sessions): Known, Json(of): Json<OfUpload>) -> Answer {
+async fn survey(State(sessions): Known, Json(of): Json<OfUpload>) -> Answer<Surveyed> {
     let session = find(&sessions, &of.session)?;
     let upload = upload(&session, &of.upload)?;
     let subject = Arc::clone(lock(&session).subject());
@@ -108,7 +109,7 @@ async fn survey(State(sessions): Known, Json(of): Json<OfUpload>) -> Answer {
         let files = upload.files().ok_or_else(incomplete)?;
         let proposal = Proposal::new(upload.path(), &files, subject.model.linkage());
         let proposal = proposal.map_err(|error| named(&upload, error))?;
-        let view = proposal.view();
+        let view = Surveyed::of(&proposal);
         let mut known = upload
             .proposal
             .lock()
@@ -234,7 +235,7 @@ fn named(upload: &Upload, error: Error) -> Error {
 impl From<Unacceptable> for Refusal {
     fn from(reason: Unacceptable) -> Self {
         match reason {
-            Unacceptable::Name(what) => Self::wrong(json!({ "what": what })),
+            Unacceptable::Name(what) => Self::wrong(what),
             Unacceptable::TooMuch(what) => Self::of(StatusCode::PAYLOAD_TOO_LARGE, &what),
         }
     }

@@ -1,66 +1,89 @@
-//! JSON views of the comparison with a second model.
+//! The comparison with a second model.
 
 use std::sync::Arc;
 
-use hitch_identification::estimation::fit::Fit;
 use hitch_plant::Channel;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
-use crate::comparison::{Comparison, Evaluated, changes};
+use crate::comparison::{Cell, Change, Comparison, Evaluated, changes};
 use crate::serve::second::Second;
 use crate::serve::session::Session;
 
-/// Both models by channel and cell; null without a second model.
-pub fn compared(session: &Session, present: &Comparison) -> Value {
-    let Some(second) = &session.second else {
-        return Value::Null;
-    };
-    let other = Comparison::of(&second.evaluated, &second.model);
-    let [before, after] = if second.is_after {
-        [present, &other]
-    } else {
-        [&other, present]
-    };
-    let mut steps = session.steps().iter();
-    json!({
-        "title": second.title,
-        "model": second.model.name,
-        "step": steps.position(|step| Arc::ptr_eq(&step.evaluated, &second.evaluated)),
-        "is_after": second.is_after,
-        "is_present": Arc::ptr_eq(&second.evaluated, &session.present().evaluated),
-        "has_other_linkage": second.model.linkage() != session.subject().model.linkage(),
-        "before": before.error,
-        "after": after.error,
-        "channels": channels(second, &session.present().evaluated),
-        "changes": changes(&before.cells, &after.cells),
-        "cells": other.cells,
-    })
+/// Both models by channel and cell; errors in sigma.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct SecondModel {
+    /// Title of the second model.
+    pub title: String,
+    /// Its name.
+    pub model: String,
+    /// Index of the step that it is; `null` if it is another one.
+    pub step: Option<usize>,
+    /// Whether changes are those from the present model to it.
+    pub is_after: bool,
+    /// Whether it is the present model.
+    pub is_present: bool,
+    /// Whether its linkage is another one.
+    pub has_other_linkage: bool,
+    /// Error of the model before.
+    pub before: f64,
+    /// Error of the model after.
+    pub after: f64,
+    /// The measured channels.
+    pub channels: Vec<ChangedChannel>,
+    /// The cells of both models.
+    pub changes: Vec<Change>,
+    /// The error map of the second model.
+    pub cells: Vec<Cell>,
 }
 
-fn channels(second: &Second, present: &Evaluated) -> Vec<Value> {
-    let [before, after] = second.ordered(present).map(|evaluated| &evaluated.fit);
-    let error = |fit: &Fit, channel: Channel| fit.channel_error(channel.index());
-    let channel = |channel: Channel| {
-        json!({
-            "key": channel.key(),
-            "before": error(before, channel),
-            "after": error(after, channel),
-        })
-    };
-    let measured = |channel: &Channel| present.experiment.measures(*channel);
-    let channels = Channel::ALL.into_iter().filter(measured);
-    channels.map(channel).collect()
+/// Errors of both models in a channel, sigma.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ChangedChannel {
+    /// Key of the channel.
+    pub key: &'static str,
+    /// Error of the model before.
+    pub before: f64,
+    /// Error of the model after.
+    pub after: f64,
 }
 
-/// Simulated samples, residuals and error of a channel of a run with the second model.
-pub fn lines(second: &Second, run: usize) -> impl Fn(Channel) -> Value {
-    let trace = second.evaluated.simulated(&second.model, run);
-    let evaluated = Arc::clone(&second.evaluated);
-    move |channel| {
-        json!({
-            "simulated": trace.channel(channel),
-            "residual": evaluated.residuals(run, channel),
-            "error": evaluated.error(run, channel),
+impl SecondModel {
+    /// The comparison of the second model with the present one; `None` without a second model.
+    pub fn of(session: &Session, present: &Comparison) -> Option<Self> {
+        let second = session.second.as_ref()?;
+        let other = Comparison::of(&second.evaluated, &second.model);
+        let [before, after] = if second.is_after {
+            [present, &other]
+        } else {
+            [&other, present]
+        };
+        let evaluated = &session.present().evaluated;
+        let mut steps = session.steps().iter();
+        Some(Self {
+            title: second.title.clone(),
+            model: second.model.name.clone(),
+            step: steps.position(|step| Arc::ptr_eq(&step.evaluated, &second.evaluated)),
+            is_after: second.is_after,
+            is_present: Arc::ptr_eq(&second.evaluated, evaluated),
+            has_other_linkage: second.model.linkage() != session.subject().model.linkage(),
+            before: before.error,
+            after: after.error,
+            channels: channels(second, evaluated),
+            changes: changes(&before.cells, &after.cells),
+            cells: other.cells,
         })
     }
+}
+
+fn channels(second: &Second, present: &Evaluated) -> Vec<ChangedChannel> {
+    let [before, after] = second.ordered(present).map(|evaluated| &evaluated.fit);
+    let channel = |channel: Channel| ChangedChannel {
+        key: channel.key(),
+        before: before.channel_error(channel.index()),
+        after: after.channel_error(channel.index()),
+    };
+    let channels = Channel::ALL.into_iter();
+    let measured = channels.filter(|channel| present.experiment.measures(*channel));
+    measured.map(channel).collect()
 }

@@ -1,64 +1,85 @@
-//! JSON views of the way from data to a saved calibration: its steps, each with its state.
+//! The way from data to a saved calibration: its steps, each with its state.
 
 use std::sync::Arc;
 
-use hitch_identification::constants::tolerances::names;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
-use crate::base_model::fit::ShownConstant;
 use crate::serve::session::Session;
-use crate::tuning::figures;
 
-/// The steps in their order, each with its state in a few words, whether it is done, and the tab where it is made.
-pub fn steps(session: &Session) -> Vec<Value> {
-    let subject = session.subject();
-    let runs = subject.experiment().runs.len();
-    let step = |key: &str, title: &str, tab: &str, is_done: bool, state: String| json!({ "key": key, "title": title, "tab": tab, "done": is_done, "state": state });
-    let (is_fitted, fit) = fit(session);
-    let (has_effects, effects) = effects(session);
-    let (is_tuned, tuning) = tuning(session);
+/// A step of the way.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct WayStep {
+    /// Key.
+    pub key: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// The tab where it is made.
+    pub tab: &'static str,
+    /// Whether it is done.
+    pub done: bool,
+    /// Its state in a few words.
+    pub state: String,
+}
+
+impl WayStep {
+    /// The steps in their order.
+    pub fn all(session: &Session) -> Vec<Self> {
+        let subject = session.subject();
+        let runs = plural(subject.experiment().runs.len(), "run");
+        let step = |key, title, tab, (done, state)| Self {
+            key,
+            title,
+            tab,
+            done,
+            state,
+        };
+        vec![
+            step("data", "Data", "map", (true, runs)),
+            step(
+                "model",
+                "Model",
+                "model",
+                (true, subject.model.name.clone()),
+            ),
+            step("fit", "Fit", "model", fit(session)),
+            step("effects", "Effects", "missing", effects(session)),
+            step(
+                "calibration",
+                "Calibration",
+                "controller",
+                calibration(session),
+            ),
+            step("loop", "Closed loop", "loop", closed_loop(session)),
+            step("tuning", "Tuning", "controller", tuning(session)),
+            step("save", "Save", "controller", saving(session)),
+        ]
+    }
+}
+
+fn calibration(session: &Session) -> (bool, String) {
+    let is_used = session.tuned.is_some() || session.tab_loop.is_some();
+    let state = if is_used {
+        "of the model"
+    } else {
+        "not used yet"
+    };
+    (is_used, state.to_owned())
+}
+
+fn closed_loop(session: &Session) -> (bool, String) {
     let is_running = session.tab_loop.is_some();
-    let has_calibration = session.tuned.is_some() || is_running;
-    let saved = session.saved.as_ref();
-    let is_saved = saved.is_some_and(|saved| Arc::ptr_eq(saved, &session.present().evaluated));
-    vec![
-        step("data", "Data", "map", true, plural(runs, "run")),
-        step("model", "Model", "model", true, subject.model.name.clone()),
-        step("fit", "Fit", "model", is_fitted, fit),
-        step("effects", "Effects", "missing", has_effects, effects),
-        step(
-            "calibration",
-            "Calibration",
-            "controller",
-            has_calibration,
-            (if has_calibration {
-                "of the model"
-            } else {
-                "not used yet"
-            })
-            .to_owned(),
-        ),
-        step(
-            "loop",
-            "Closed loop",
-            "loop",
-            is_running,
-            (if is_running { "running" } else { "not started" }).to_owned(),
-        ),
-        step("tuning", "Tuning", "controller", is_tuned, tuning),
-        step(
-            "save",
-            "Save",
-            "controller",
-            is_saved,
-            match (saved.is_some(), is_saved) {
-                (_, true) => "saved",
-                (true, false) => "changed since",
-                (false, false) => "not saved",
-            }
-            .to_owned(),
-        ),
-    ]
+    let state = if is_running { "running" } else { "not started" };
+    (is_running, state.to_owned())
+}
+
+fn saving(session: &Session) -> (bool, String) {
+    let Some(saved) = &session.saved else {
+        return (false, "not saved".to_owned());
+    };
+    let is_saved = Arc::ptr_eq(saved, &session.present().evaluated);
+    let state = if is_saved { "saved" } else { "changed since" };
+    (is_saved, state.to_owned())
 }
 
 fn fit(session: &Session) -> (bool, String) {
@@ -101,36 +122,4 @@ fn tuning(session: &Session) -> (bool, String) {
 
 fn plural(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
-}
-
-/// The constants of the first model: which can be held in a fit, and the fit, if there was one.
-pub fn constants(session: &Session) -> Value {
-    let subject = session.subject();
-    let row = |constant: &ShownConstant| json!({ "cells": constant.cells(), "beyond": constant.is_beyond() });
-    let fitted = subject.fitted.as_ref().map(|fit| {
-        let determined = fit.constants.iter().filter(|one| one.determined);
-        json!({
-            "error_before": fit.error_before,
-            "error_after": fit.error_after,
-            "headings": ShownConstant::HEADINGS,
-            "rows": determined.map(row).collect::<Vec<_>>(),
-            "not_determined": fit.not_determined,
-            "at_an_end": fit.at_an_end,
-        })
-    });
-    json!({ "names": names(subject.model.constants()), "fitted": fitted })
-}
-
-/// The tuned calibration; null if there is none for the present model.
-pub fn tuned(session: &Session) -> Value {
-    let Some(tuned) = session.present_tuned() else {
-        return Value::Null;
-    };
-    let figure = |figure: &figures::Figure| json!({ "cells": figure.cells(), "met": figure.met });
-    json!({
-        "sentence": figures::sentence(&tuned.figures),
-        "headings": figures::Figure::HEADINGS,
-        "figures": tuned.figures.iter().map(figure).collect::<Vec<_>>(),
-        "changes": tuned.changes,
-    })
 }

@@ -7,8 +7,8 @@ use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
 use hitch_quantities::ValidCalibration;
-use serde_json::Value;
 
+use super::super::answer::LoopAnswer;
 use super::heard::Heard;
 use super::state::State;
 use super::view;
@@ -117,7 +117,7 @@ impl BusMonitor {
 
 impl Place {
     /// The samples since the last call, and the present state.
-    pub fn advance(&self) -> Value {
+    pub fn advance(&self) -> LoopAnswer {
         let state = self.shared.lock();
         let (samples, count) = state
             .heard

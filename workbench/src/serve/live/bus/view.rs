@@ -2,9 +2,10 @@
 
 use std::time::Instant;
 
+use hitch_closed_loop::driven::HitchView;
 use hitch_protocols::j1939::trouble::Code;
-use serde_json::{Value, json};
 
+use super::super::answer::{Connection, LoopAnswer};
 use super::heard::{Heard, Hitch, TimedSample};
 use super::measured::Measured;
 use super::state::State;
@@ -16,7 +17,12 @@ const LARGEST_POSITION: u8 = 250;
 const PERCENT_PER_BIT: f64 = 0.4;
 
 /// Samples and present state.
-pub fn shown(state: &State, address: &BusAddress, samples: &[TimedSample], now: Instant) -> Value {
+pub fn shown(
+    state: &State,
+    address: &BusAddress,
+    samples: &[TimedSample],
+    now: Instant,
+) -> LoopAnswer {
     let each = |value: fn(&Measured) -> Option<f64>| -> Vec<Option<f64>> {
         samples.iter().map(|(_, sample)| value(sample)).collect()
     };
@@ -31,30 +37,35 @@ pub fn shown(state: &State, address: &BusAddress, samples: &[TimedSample], now: 
         (None, Some(problem)) => ("not heard".to_owned(), problem.clone()),
         (None, None) => ("not heard".to_owned(), String::new()),
     };
-    let hitch_view = json!({
-        "time_s": samples.iter().map(|(time_s, _)| *time_s).collect::<Vec<f64>>(),
-        "angle_deg": each(|sample| sample.angle_deg),
-        "shown_deg": each(|sample| sample.angle_deg),
-        "lift_a": each(|sample| sample.lift_a),
-        "lower_a": each(|sample| sample.lower_a),
-        "cylinder_bar": each(|sample| sample.cylinder_bar),
-        "pump_bar": each(|sample| sample.pump_bar),
-        "state": name,
-        "state_text": text,
-        "fault": joined(codes, ", ", |code| format!("SPN {} FMI {}", code.spn, code.fmi)),
-        "fault_text": joined(codes, "; ", words::trouble),
-        "trip_text": null,
-        "move": null,
-    });
-    json!({
-        "loops": [hitch_view],
-        "bus": {
-            "connected": state.adapter.is_ok(),
-            "problem": problem,
-            "text": listening(state, address, hitch),
-            "position_percent": hitch.and_then(position_percent),
-        },
-    })
+    let hitch_view = HitchView {
+        time_s: samples.iter().map(|(time_s, _)| *time_s).collect(),
+        angle_deg: each(|sample| sample.angle_deg),
+        shown_deg: each(|sample| sample.angle_deg),
+        lift_a: each(|sample| sample.lift_a),
+        lower_a: each(|sample| sample.lower_a),
+        cylinder_bar: each(|sample| sample.cylinder_bar),
+        pump_bar: each(|sample| sample.pump_bar),
+        state: name,
+        state_text: text,
+        fault: joined(codes, ", ", |code| {
+            format!("SPN {} FMI {}", code.spn, code.fmi)
+        }),
+        fault_text: joined(codes, "; ", words::trouble),
+        trip_text: None,
+        last_move: None,
+    };
+    let connection = Connection {
+        connected: state.adapter.is_ok(),
+        problem,
+        text: listening(state, address, hitch),
+        position_percent: hitch.and_then(position_percent),
+    };
+    LoopAnswer {
+        loops: vec![hitch_view],
+        speed: None,
+        behind: None,
+        bus: Some(connection),
+    }
 }
 
 /// Why there are no data; `None` if they arrive.
