@@ -14,6 +14,10 @@ DARK = {**DESKTOP, "color_scheme": "dark"}
 # Computations may share the machine with others.
 PATIENCE_MS = 180_000
 
+# The last requests of a page; one under way is not among them.
+REQUESTS = """() => performance.getEntriesByType("resource").filter((one) => one.name.includes("/api/")).slice(-20)
+  .map((one) => `${one.startTime.toFixed(0)} ${one.duration.toFixed(0)} ${one.responseStatus} ${one.name.split("/api/")[1]}`)"""
+
 
 def launched(playwright, name: str):
     """The browser with that name."""
@@ -31,9 +35,22 @@ def story(name: str, folder: str):
     expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
         browser = launched(playwright, name)
-        yield browser, pictures, faults
+        try:
+            yield browser, pictures, faults
+        except BaseException:
+            tell(browser, pictures, faults)
+            raise
         assert not faults, faults
         browser.close()
+
+
+def tell(browser, pictures: Path, faults: list) -> None:
+    """Prints what the pages of a story that failed asked their server last, and takes their pictures."""
+    for number, page in enumerate(page for context in browser.contexts for page in context.pages):
+        page.screenshot(path=pictures / f"failed_{number}.png")
+        requests = page.evaluate(REQUESTS)
+        print(f"page {number}, its last requests (start, duration in ms, state):", *requests, sep="\n  ", flush=True)
+    print("faults:", faults, flush=True)
 
 
 def opened(browser, address: str, options: dict, faults: list) -> Page:
