@@ -12,7 +12,7 @@ use crate::units::{
 };
 
 parameter_group! {
-    /// The hydraulic circuit, as far as the controller has to know it.
+    /// The hydraulic circuit, as far as the controller uses it.
     HydraulicParameters, "hydraulics" {
         /// Piston area: turns piston speed into flow. 76 mm bore.
         piston_area: SquareMillimetre = 4537, 500..=50_000;
@@ -20,19 +20,19 @@ parameter_group! {
         load_ratio: PerMille = 4_300, 500..=30_000;
         /// Time constant of the lift valve's solenoid and spool: what flows on after the coil has been told to stop.
         spool_lag: Millisecond = 40, 0..=500;
-        /// The same of the lowering valve: of one kind, but by 10 ms and more another unit.
+        /// The same of the lowering valve. Two valves of one kind differ by 10 ms and more.
         lower_spool_lag: Millisecond = 40, 0..=500;
         /// Lag of the pressure compensator. A lifted load swings on a compensator that lags: with a value above zero it is lifted with the gentle ramps from the first move on, otherwise once its motion shows the lag, which it cannot behind a slow angle sensor.
         compensator_lag: Millisecond = 0, 0..=200;
-        /// Hysteresis of coil and spool: how much further the current has to fall than it rose for the same flow. 2 % of the range, half of what valves have with dither, for a machine that hasn't been taught: teaching finds more, and believes it.
+        /// Hysteresis of coil and spool: how much further the current has to fall than it rose for the same flow. 2 % of the range, half of what valves have with dither, for a machine that has not been taught; teaching measures it.
         hysteresis: MilliAmp = 80, 0..=1_000;
         /// Pressure drop at which the lowering table was measured.
         reference_drop: MilliBar = 15_000, 1_000..=250_000;
-        /// Drop taken for lowering until a sensor or a lowering move tells better: a 150 kg load holds near it.
+        /// Pressure drop assumed for lowering until a sensor or a lowering move shows it: that of a load of 150 kg.
         assumed_drop: MilliBar = 15_000, 1_000..=250_000;
-        /// Smallest drop that the lowering map believes: below it friction decides, and the square root would ask for any current.
+        /// Smallest drop that the lowering map uses: below it friction dominates, and the current from the square root is not bounded.
         smallest_drop: MilliBar = 1_000, 200..=10_000;
-        /// Largest drop that the lowering map believes: above the relief valve only shocks remain.
+        /// Largest drop that the lowering map uses: above the relief setting there are only shocks.
         largest_drop: MilliBar = 200_000, 20_000..=350_000;
         /// What the sensor of the cylinder shows without pressure: it is taken off the reading.
         pressure_offset: MilliBar = 0, -20_000..=20_000;
@@ -48,7 +48,7 @@ parameter_group! {
 }
 
 parameter_group! {
-    /// What the sensors can plausibly say.
+    /// Plausible values of the sensors.
     SensorParameters, "sensors" {
         /// Smallest rocker angle that a healthy sensor shows: the lower end less mounting error.
         angle_min: MilliDegree = 40_000, -360_000..=360_000;
@@ -80,7 +80,7 @@ parameter_group! {
         pick_up_window: MilliDegree = 1_000, 100..=5_000;
         /// ... and to have moved this far: 0.8 % of the range, beyond lever noise.
         lever_movement: MilliDegree = 730, 100..=10_000;
-        /// ... within this time: a lever that creeps at less than 3.7 degrees a second isn't being moved by a hand.
+        /// ... within this time: a lever that creeps at less than 3.7 degrees a second is not moved by a hand.
         lever_time: Millisecond = 200, 50..=10_000;
         /// How long everything has to be healthy before a fault gives way to the lock.
         healthy_time: Millisecond = 500, 10..=60_000;
@@ -102,7 +102,7 @@ parameter_group! {
         dial_middle_speed: MicrometrePerSecond = 75_000, 1_000..=1_000_000;
         /// Dial from which lowering is as fast as `position.lower_speed`: the dial's open end with room for its tolerance.
         dial_open: PerMille = 960, 550..=1_000;
-        /// Where quick lift goes: 88 % of the range, short of the upper end so that a drive shaft isn't bent by habit.
+        /// Where quick lift goes: 88 % of the range, short of the upper end so that a drive shaft is not bent.
         quick_lift_angle: MilliDegree = 124_900, -360_000..=360_000;
         /// Lever at or below which a hitch that has come down floats: the lever's bottom stop, 0.1 degree above the lowest set point.
         float_lever: MilliDegree = 44_700, -360_000..=360_000;
@@ -110,7 +110,7 @@ parameter_group! {
         float_angle: MilliDegree = 49_600, -360_000..=360_000;
         /// Lever from which floating ends: 0.8 % of the range beyond where it begins, clear of lever noise.
         float_exit: MilliDegree = 45_450, -360_000..=360_000;
-        /// ... and for how long: a lever that is knocked isn't meant.
+        /// ... and for how long: a knock on the lever does not count.
         float_exit_time: Millisecond = 200, 0..=5_000;
         /// 1: each external button has a second contact, which opens when it is pressed. A press and a release then need both contacts to say so.
         second_contact: Count = 0, 0..=1;
@@ -140,7 +140,7 @@ parameter_group! {
 parameter_group! {
     /// Position control.
     PositionParameters, "position" {
-        /// Lowest set point that is obeyed: half a degree above the mechanical end, so the end stop isn't worked against. Changed at rest only; the hitch is then locked until the lever is moved through it.
+        /// Lowest set point that is obeyed: half a degree above the mechanical end, so that the hitch does not push against the end stop. Changed at rest only; the hitch is then locked until the lever is moved through it.
         lower_limit: MilliDegree = 44_600, -360_000..=360_000;
         /// Highest set point that is obeyed: half a degree below the mechanical end. Changed at rest only.
         upper_limit: MilliDegree = 135_400, -360_000..=360_000;
@@ -170,7 +170,7 @@ parameter_group! {
         lower_acceleration: MillimetrePerSecondSquared = 3_200, 50..=20_000;
         /// Deceleration when lowering, at the reference drop: what stops 250 kg adds half of their pressure, and thick oil still lets the estimate follow.
         lower_deceleration: MillimetrePerSecondSquared = 850, 50..=20_000;
-        /// Deceleration when a move is called off or reversed: twice the ramp, for the operator has changed their mind.
+        /// Deceleration when a move is called off or reversed: twice the ramp, as the operator wants another motion.
         abort_deceleration: MillimetrePerSecondSquared = 3_000, 50..=20_000;
     }
 }
@@ -182,7 +182,7 @@ parameter_group! {
         rate_limit: MilliDegreePerSecond = 15_000, 100..=25_000;
         /// Longest travel of one press, after which the button has to be released: a wire that is shorted to ground moves the hitch no further. At most the default, a third of the travel.
         longest_travel: MilliDegree = 30_000, 5_000..=30_000;
-        /// Ramp of the rocker speed: full speed in half a second, with room for second thoughts.
+        /// Ramp of the rocker speed: full speed in half a second, so that the operator can still release it.
         rate_slope: MilliDegreePerSecond = 30_000, 1_000..=1_000_000;
         /// Time of the integral on what is left of the speed's error: slower than estimate and spool together.
         trim_time: Millisecond = 250, 20..=10_000;
@@ -194,7 +194,7 @@ parameter_group! {
 parameter_group! {
     /// Check-valve logic: resting on the check valve.
     HoldParameters, "hold" {
-        /// Both coils stay off this long between two moves: the check valve seats, the spool centres, the pressure calms down.
+        /// Both coils stay off this long between two moves: the check valve seats, the spool centres, the pressure settles.
         dwell: Millisecond = 150, 20..=2_000;
         /// Time constant of the resting position: slow against noise and swinging, fast against a leak.
         rest_time: Millisecond = 250, 1..=5_000;
@@ -208,7 +208,7 @@ parameter_group! {
 }
 
 parameter_group! {
-    /// Compensator logic: flow that doesn't arrive.
+    /// Compensator logic: flow that is missing.
     SaturationParameters, "saturation" {
         /// Window over which demanded and measured travel are compared.
         window: Millisecond = 400, 50..=5_000;
@@ -232,13 +232,13 @@ parameter_group! {
         filter_time: Millisecond = 16, 1..=500;
         /// Where a ramp begins: below the lowest threshold of this kind of valve.
         ramp_start: MilliAmp = 600, 0..=5_000;
-        /// How fast it rises: the hitch gets no faster than a walking snail before it is noticed to move.
+        /// How fast it rises: by the curve the hitch is at 4 mm/s when it has moved by `moved`.
         ramp_slope: MilliAmpPerSecond = 400, 10..=10_000;
-        /// Where it gives up: beyond the highest threshold, where the valve is a quarter open.
+        /// Where it ends without a result: beyond the highest threshold, where the valve is a quarter open.
         ramp_end: MilliAmp = 2_000, 100..=5_000;
         /// What counts as moved: 0.17 degree, twenty times what is left of the noise.
         moved: Micrometre = 300, 20..=10_000;
-        /// Furthest that a threshold may be off the curve: valves of one kind differ by 0.1 A, and plugs age.
+        /// Furthest that a threshold may be off the curve: valves of one kind differ by 0.1 A, and contacts age.
         most_shift: MilliAmp = 300, 10..=1_000;
         /// Furthest that the ramps of one valve may be apart: what its friction leaves uncertain.
         most_spread: MilliAmp = 30, 2..=500;
@@ -252,11 +252,11 @@ parameter_group! {
         longest_drive: Millisecond = 60_000, 1_000..=600_000;
         /// Stroke of the cylinder, from end to end.
         stroke: Micrometre = 158_000, 10_000..=2_000_000;
-        /// How far the sensor may be turned against the linkage: beyond it is mounted a tooth off. At most 5 degrees, by which the limits then are wrong.
+        /// How far the sensor may be turned against the linkage: beyond it the sensor is mounted a tooth off. At most 5 degrees, by which the limits then are wrong.
         most_offset: MilliDegree = 3_000, 100..=5_000;
         /// How far the travel may differ from what the linkage allows: an obstacle, or another linkage. At most 5 degrees, by which the limits then are wrong.
         most_stretch: MilliDegree = 1_500, 100..=5_000;
-        /// Set points stay this far inside the ends, so that the end stops aren't worked against.
+        /// Set points stay this far inside the ends, so that the hitch does not push against the end stops.
         end_margin: MilliDegree = 500, 0..=10_000;
     }
 }
@@ -284,7 +284,7 @@ parameter_group! {
         assumed_supply: MilliVolt = 13_500, 6_000..=36_000;
         /// Amplitude of the dither: 3 % of the largest current, which halves the hysteresis of a spool on plain current.
         dither_amplitude: MilliAmp = 100, 0..=400;
-        /// Period of the dither: 125 Hz, above what a spool follows and below what a coil swallows.
+        /// Period of the dither: 125 Hz, above the band of a spool and below that of a coil.
         dither_period: Millisecond = 8, 4..=20;
     }
 }
@@ -310,7 +310,7 @@ parameter_group! {
         lowest: PerMille = 0, 0..=1_000;
         /// Highest position that an implement may ask for, 1000 is the upper limit of the travel: 88 %, that of quick lift, short of the upper end so that a drive shaft isn't bent.
         highest: PerMille = 880, 0..=1_000;
-        /// Largest piston speed on the set point of an implement, both ways: half of what the valve gives when lifting, the full travel in 2.1 s. Nobody has a hand on the lever, and a bystander has the time to step back.
+        /// Largest piston speed on the set point of an implement, both ways: half of what the valve gives when lifting, the full travel in 2.1 s. No hand is on the lever, and a bystander has the time to step back.
         speed: MicrometrePerSecond = 75_000, 1_000..=1_000_000;
         /// Ground speed above which remote control ends and is refused, if a node tells the speed: 15 km/h, faster than any work with an implement that commands its hitch.
         ground_speed: MicrometrePerSecond = 4_167_000, 0..=60_000_000;
@@ -342,7 +342,7 @@ parameter_group! {
         overrun_time: Millisecond = 2, 1..=22;
         /// Lowest supply voltage: below it the largest current no longer fits through a hot coil, and converters lose their reference.
         supply_min: MilliVolt = 8_000, 5_000..=24_000;
-        /// Highest supply voltage: a charging fault, or somebody jump-starts with 24 V.
+        /// Highest supply voltage: a charging fault, or a start with a 24 V supply.
         supply_max: MilliVolt = 16_800, 9_000..=36_000;
         /// How long the supply has to be wrong: longer than the swing as a relay switches, and at full speed less than 2 degrees. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
         supply_time: Millisecond = 10, 1..=44;
@@ -400,7 +400,7 @@ parameter_group! {
         decay_time: Millisecond = 30, 2..=44;
         /// Largest error of the converters' reference by the band gap. A healthy one shows up to 4.5 %: 2.5 % of the band gap and 2 % of a regulator. Currents and voltages are corrected for it, so their own error stays at the 2.5 %.
         reference_error: PerMille = 60, 10..=200;
-        /// How long the reference has to be off: its readings are corrected at once, so there is no hurry; one conversion that is disturbed by an edge of a pulse is no fault. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        /// How long the reference has to be off: its readings are corrected at once; one conversion that is disturbed by an edge of a pulse is no fault. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
         reference_time: Millisecond = 20, 1..=44;
         /// Lowest supply of the sensors: 5 % below 5 V, the limit of the sensors' own data.
         sensor_supply_min: MilliVolt = 4_750, 1_000..=30_000;
