@@ -6,12 +6,12 @@ use std::ffi::OsStr;
 use hitch_identification::adequacy::lack_of_fit::cells;
 use hitch_identification::adequacy::unsuitable_base::{is_unsuitable, wrong_share};
 use hitch_identification::base::{BaseFit, fit_base_model};
-use hitch_identification::constants::parameter::{SCALARS, SENSORS};
+use hitch_identification::constants::parameter::SENSORS;
 use hitch_identification::constants::tolerances::Tolerances;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
-use hitch_model_file::Valve;
+use hitch_model_file::{Valve, fitted_constants};
 use hitch_plant::units::lpm_from_m3_s;
 use hitch_plant::{Constants, Model, ValveCurve};
 use host_tests::seeds::{cases, seeds};
@@ -123,9 +123,10 @@ fn true_value(name: &str, truth: &Model) -> f64 {
             valve.of(&constants).curve.threshold_a()
         }
         _ => {
-            let mut scalars = SCALARS.iter().filter(|scalar| scalar.name == name);
-            let scalar = scalars.next().expect("a constant");
-            *(scalar.place)(&mut constants) / scalar.si
+            let (constant, _) = fitted_constants()
+                .find(|(constant, _)| constant.name() == name)
+                .expect("a constant");
+            *(constant.place)(&mut constants) / constant.unit
         }
     }
 }

@@ -16,6 +16,20 @@ pub const M_PER_MM: f64 = 1e-3;
 /// Radian in a degree.
 pub const RAD_PER_DEG: f64 = std::f64::consts::PI / 180.0;
 
+/// Ends of keys, and the unit that each stands for.
+const UNITS: [(&str, &str); 10] = [
+    ("_n_s_m", "N s/m"),
+    ("_kg_m3", "kg/m3"),
+    ("_lpm", "l/min"),
+    ("_bar", "bar"),
+    ("_pa", "Pa"),
+    ("_ms", "ms"),
+    ("_mm", "mm"),
+    ("_kg", "kg"),
+    ("_l", "l"),
+    ("_m", "m"),
+];
+
 /// The machines that have a constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Had {
@@ -27,7 +41,28 @@ pub enum Had {
     Dimensions,
 }
 
+/// How well a data sheet or a drawing states a constant that a fit estimates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Standard deviation of its logarithm.
+    pub sigma: f64,
+    /// Which fits estimate it.
+    pub role: Role,
+}
+
+/// Which fits estimate a constant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// Every fit.
+    Usual,
+    /// Those of the dynamic model, which alone uses it.
+    Dynamic,
+    /// Every fit, but it is not identifiable separately from the others.
+    Inseparable,
+}
+
 /// A constant of a model file.
+#[derive(Debug)]
 pub struct Constant {
     /// Its table.
     pub table: &'static str,
@@ -41,6 +76,8 @@ pub struct Constant {
     pub place: fn(&mut Constants) -> &mut f64,
     /// The machines that have it.
     pub had: Had,
+    /// Its tolerance, if a fit estimates it.
+    pub tolerance: Option<Tolerance>,
 }
 
 /// The variants of a machine, on which its constants depend.
@@ -97,6 +134,12 @@ impl Variant {
             _ => numbers.chain(more.iter().copied()).collect(),
         }
     }
+}
+
+/// The constants that a fit estimates, with their tolerances.
+pub fn fitted_constants() -> impl Iterator<Item = (&'static Constant, Tolerance)> {
+    let constants = CONSTANTS.iter();
+    constants.filter_map(|constant| Some((constant, constant.tolerance?)))
 }
 
 /// Sets constants that the machine does not have to zero.
@@ -177,6 +220,7 @@ const fn constant(
         range,
         place,
         had: Had::Always,
+        tolerance: None,
     }
 }
 
@@ -184,41 +228,64 @@ impl Constant {
     const fn only(self, had: Had) -> Self {
         Self { had, ..self }
     }
+
+    /// A constant that a fit estimates, with the standard deviation of its logarithm.
+    const fn within(self, sigma: f64, role: Role) -> Self {
+        let tolerance = Some(Tolerance { sigma, role });
+        Self { tolerance, ..self }
+    }
+
+    /// Its name, `table.key`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        format!("{}.{}", self.table, self.key)
+    }
+
+    /// The unit of its key; empty for a pure number.
+    #[must_use]
+    pub fn unit_text(&self) -> &'static str {
+        let unit = UNITS.iter().find(|(end, _)| self.key.ends_with(end));
+        unit.map_or("", |(_, unit)| unit)
+    }
 }
 
 /// All constants except the flow curves.
+///
+/// Tolerances: pump with efficiency 5 %, springs 10 % to 20 %, bore 2 %, weight of the links 10 %, lengths 1 %; lag, stiffness and
+/// friction are rarely stated and may be off by a third and more. The cracking pressure only affects the flow of the lift valve,
+/// whose flow curve can compensate any value.
 #[rustfmt::skip]
 pub static CONSTANTS: [Constant; 38] = [
-    constant(("pump", "theoretical_flow_lpm"), M3_S_PER_LPM, 0.1..=1000.0, |c| &mut c.pump.theoretical_flow_m3_s),
+    constant(("pump", "theoretical_flow_lpm"), M3_S_PER_LPM, 0.1..=1000.0, |c| &mut c.pump.theoretical_flow_m3_s).within(0.05, Role::Usual),
     constant(("pump", "volumetric_efficiency"), 1.0, 0.01..=1.0, |c| &mut c.pump.volumetric_efficiency),
-    constant(("pump", "standby_pressure_bar"), PA_PER_BAR, 0.1..=300.0, |c| &mut c.pump.standby_pressure_pa).only(Had::LoadSensing),
-    constant(("pump", "response_time_ms"), S_PER_MS, 0.0..=1000.0, |c| &mut c.pump.response_time_s).only(Had::LoadSensing),
-    constant(("relief_valve", "set_pressure_bar"), PA_PER_BAR, 1.0..=1000.0, |c| &mut c.relief_valve.set_pressure_pa),
-    constant(("compensator", "margin_bar"), PA_PER_BAR, 0.1..=100.0, |c| &mut c.compensator.margin_pa),
-    constant(("check_valve", "cracking_pressure_bar"), PA_PER_BAR, 0.0..=100.0, |c| &mut c.check_valve.cracking_pressure_pa),
+    constant(("pump", "standby_pressure_bar"), PA_PER_BAR, 0.1..=300.0, |c| &mut c.pump.standby_pressure_pa).only(Had::LoadSensing).within(0.1, Role::Usual),
+    constant(("pump", "response_time_ms"), S_PER_MS, 0.0..=1000.0, |c| &mut c.pump.response_time_s).only(Had::LoadSensing).within(0.3, Role::Dynamic),
+    constant(("relief_valve", "set_pressure_bar"), PA_PER_BAR, 1.0..=1000.0, |c| &mut c.relief_valve.set_pressure_pa).within(0.1, Role::Usual),
+    constant(("compensator", "margin_bar"), PA_PER_BAR, 0.1..=100.0, |c| &mut c.compensator.margin_pa).within(0.15, Role::Usual),
+    constant(("check_valve", "cracking_pressure_bar"), PA_PER_BAR, 0.0..=100.0, |c| &mut c.check_valve.cracking_pressure_pa).within(0.2, Role::Inseparable),
     constant(("lift_valve", "reference_drop_bar"), PA_PER_BAR, 0.01..=500.0, |c| &mut c.lift_valve.reference_drop_pa),
     constant(("lift_valve", "transition_drop_bar"), PA_PER_BAR, 0.0..=10.0, |c| &mut c.lift_valve.transition_drop_pa),
     constant(("lower_valve", "reference_drop_bar"), PA_PER_BAR, 0.01..=500.0, |c| &mut c.lower_valve.reference_drop_pa),
     constant(("lower_valve", "transition_drop_bar"), PA_PER_BAR, 0.0..=10.0, |c| &mut c.lower_valve.transition_drop_pa),
     constant(("solenoid", "resistance_ohm"), 1.0, 0.5..=20.0, |c| &mut c.solenoid.resistance_ohm),
     constant(("solenoid", "inductance_mh"), H_PER_MH, 0.5..=100.0, |c| &mut c.solenoid.inductance_h),
-    constant(("spool", "time_constant_ms"), S_PER_MS, 0.0..=10_000.0, |c| &mut c.spool_time_constant_s),
-    constant(("cylinder", "bore_mm"), M_PER_MM, 5.0..=1000.0, |c| &mut c.cylinder.bore_m),
+    constant(("spool", "time_constant_ms"), S_PER_MS, 0.0..=10_000.0, |c| &mut c.spool_time_constant_s).within(0.3, Role::Dynamic),
+    constant(("cylinder", "bore_mm"), M_PER_MM, 5.0..=1000.0, |c| &mut c.cylinder.bore_m).within(0.02, Role::Usual),
     constant(("cylinder", "stroke_mm"), M_PER_MM, 5.0..=5000.0, |c| &mut c.cylinder.stroke_m),
     constant(("cylinder", "dead_volume_l"), M3_PER_L, 0.001..=100.0, |c| &mut c.cylinder.dead_volume_m3),
-    constant(("cylinder", "viscous_friction_n_s_m"), 1.0, 0.0..=1e7, |c| &mut c.cylinder.viscous_friction_n_s_m),
+    constant(("cylinder", "viscous_friction_n_s_m"), 1.0, 0.0..=1e7, |c| &mut c.cylinder.viscous_friction_n_s_m).within(0.5, Role::Dynamic),
     constant(("oil", "density_kg_m3"), 1.0, 500.0..=1500.0, |c| &mut c.oil.density_kg_m3),
-    constant(("oil", "bulk_modulus_pa"), 1.0, 1e7..=1e10, |c| &mut c.oil.bulk_modulus_pa),
-    constant(("linkage", "rocker_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.rocker_arm_m).only(Had::Dimensions),
+    constant(("oil", "bulk_modulus_pa"), 1.0, 1e7..=1e10, |c| &mut c.oil.bulk_modulus_pa).within(0.3, Role::Dynamic),
+    constant(("linkage", "rocker_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.rocker_arm_m).only(Had::Dimensions).within(0.01, Role::Usual),
     constant(("linkage", "lift_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_arm_m).only(Had::Dimensions),
     constant(("linkage", "lift_rod_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_rod_m).only(Had::Dimensions),
     constant(("linkage", "lower_link_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lower_link_m).only(Had::Dimensions),
     constant(("linkage", "lift_rod_joint_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_rod_joint_m).only(Had::Dimensions),
-    constant(("linkage", "connecting_rod_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.connecting_rod_m).only(Had::Dimensions),
+    constant(("linkage", "connecting_rod_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.connecting_rod_m).only(Had::Dimensions).within(0.01, Role::Usual),
     constant(("linkage", "pivot_x_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.pivot_x_m).only(Had::Dimensions),
     constant(("linkage", "pivot_y_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.pivot_y_m).only(Had::Dimensions),
     constant(("linkage", "cylinder_axis_y_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.cylinder_axis_y_m).only(Had::Dimensions),
-    constant(("masses", "dead_weight_kg"), 1.0, 0.0..=10_000.0, |c| &mut c.masses.dead_weight_kg),
+    constant(("masses", "dead_weight_kg"), 1.0, 0.0..=10_000.0, |c| &mut c.masses.dead_weight_kg).within(0.1, Role::Usual),
     constant(("masses", "piston_kg"), 1.0, 0.1..=10_000.0, |c| &mut c.masses.piston_kg),
     constant(("loads", "light_kg"), 1.0, 0.0..=20_000.0, |c| &mut c.usual_loads.light_kg),
     constant(("loads", "usual_kg"), 1.0, 0.0..=20_000.0, |c| &mut c.usual_loads.usual_kg),

@@ -61,6 +61,7 @@ mod terms;
 mod variant;
 mod write;
 
+pub use constants::{Constant, Role, Tolerance, fitted_constants};
 pub use quoted::quoted;
 pub use scalars::{Scalar, scalars, with_scalars};
 pub use starting_points::{dynamic, nominal};

@@ -5,20 +5,6 @@ use hitch_plant::{LinkageError, Model};
 use crate::constants::{Constant, Variant};
 use crate::meaning::meaning_of;
 
-/// Ends of keys, and the unit that each stands for.
-const UNITS: [(&str, &str); 10] = [
-    ("_n_s_m", "N s/m"),
-    ("_kg_m3", "kg/m3"),
-    ("_lpm", "l/min"),
-    ("_bar", "bar"),
-    ("_pa", "Pa"),
-    ("_ms", "ms"),
-    ("_mm", "mm"),
-    ("_kg", "kg"),
-    ("_l", "l"),
-    ("_m", "m"),
-];
-
 /// A number of a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scalar {
@@ -67,12 +53,11 @@ pub fn scalars(model: &Model) -> Vec<Scalar> {
 }
 
 fn of_constant(constant: &Constant, si: f64) -> Scalar {
-    let unit = UNITS.iter().find(|(end, _)| constant.key.ends_with(end));
     let meaning = meaning_of(constant.table, constant.key);
     Scalar {
-        name: format!("{}.{}", constant.table, constant.key),
+        name: constant.name(),
         meaning: meaning.map_or_else(String::new, |meaning| meaning.what.to_owned()),
-        unit: unit.map_or("", |(_, unit)| unit),
+        unit: constant.unit_text(),
         value: si / constant.unit,
         low: *constant.range.start(),
         high: *constant.range.end(),

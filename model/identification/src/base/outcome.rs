@@ -148,7 +148,7 @@ impl Posterior {
         let all = parameters.iter().enumerate();
         all.map(|(k, parameter)| match parameter {
             Parameter::Flow(valve, _) => !any_point(*valve),
-            Parameter::Scalar(_) | Parameter::Threshold(_) => !self.determined[k],
+            Parameter::Scalar(..) | Parameter::Threshold(_) => !self.determined[k],
             Parameter::Sensor(_) => !self.has_error(k),
         })
         .collect()

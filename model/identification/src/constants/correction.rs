@@ -43,8 +43,8 @@ fn corrected_constants(
 ) -> Constants {
     let mut constants = declared.clone();
     for (parameter, &value) in parameters.iter().zip(theta.iter()) {
-        if let Parameter::Scalar(scalar) = parameter {
-            *(scalar.place)(&mut constants) *= value.exp();
+        if let Parameter::Scalar(constant, _) = parameter {
+            *(constant.place)(&mut constants) *= value.exp();
         }
     }
     for valve in [Valve::Lift, Valve::Lower] {

@@ -78,12 +78,17 @@ impl Fitted<'_> {
         let (value, half) = (self.theta[k], INTERVAL * self.sigma[k]);
         let mut tolerance = self.prior.sigma[k];
         let (name, unit, declared, at): (_, _, _, Box<dyn Fn(f64) -> f64>) = match parameter {
-            Parameter::Scalar(scalar) => {
-                let si = *(scalar.place)(&mut self.declared.constants().clone());
-                let declared = si / scalar.si;
+            Parameter::Scalar(constant, _) => {
+                let si = *(constant.place)(&mut self.declared.constants().clone());
+                let declared = si / constant.unit;
                 tolerance *= declared;
                 let at = move |correction: f64| declared * correction.exp();
-                (scalar.name.to_owned(), scalar.unit, declared, Box::new(at))
+                (
+                    constant.name(),
+                    constant.unit_text(),
+                    declared,
+                    Box::new(at),
+                )
             }
             Parameter::Threshold(valve) => {
                 let declared = valve.of(self.declared.constants()).curve.threshold_a();
@@ -122,7 +127,7 @@ impl Fitted<'_> {
         let all = self.parameters.iter().enumerate();
         all.filter_map(|(k, parameter)| match *parameter {
             Parameter::Flow(valve, point) => Some(self.curve_point(k, valve, point)),
-            Parameter::Scalar(_) | Parameter::Threshold(_) | Parameter::Sensor(_) => None,
+            Parameter::Scalar(..) | Parameter::Threshold(_) | Parameter::Sensor(_) => None,
         })
         .collect()
     }

@@ -77,7 +77,7 @@ impl Prior {
 /// One sigma of an unknown by the tolerances of data sheets.
 fn usual_sigma(parameter: Parameter) -> f64 {
     match parameter {
-        Parameter::Scalar(scalar) => scalar.tolerance,
+        Parameter::Scalar(_, tolerance) => tolerance.sigma,
         Parameter::Sensor(sensor) => sensor.tolerance,
         Parameter::Threshold(_) => THRESHOLD_SIGMA_A,
         Parameter::Flow(..) => SHARED.hypot(CHANGING).hypot(SINGLE),

@@ -145,7 +145,9 @@ fn unknown(name: &str, constants: &Constants) -> String {
 /// Declared value in the unit of the key: the threshold of a curve, none for its flows.
 fn declared(parameter: &Parameter, constants: &Constants) -> Option<f64> {
     match parameter {
-        Parameter::Scalar(scalar) => Some(*(scalar.place)(&mut constants.clone()) / scalar.si),
+        Parameter::Scalar(constant, _) => {
+            Some(*(constant.place)(&mut constants.clone()) / constant.unit)
+        }
         Parameter::Threshold(valve) => Some(valve.of(constants).curve.threshold_a()),
         Parameter::Sensor(_) | Parameter::Flow(..) => None,
     }
