@@ -10,6 +10,7 @@ mod flooded_bus;
 mod from_measurement_to_motion;
 mod frozen_angle;
 mod identified_dynamics;
+mod in_work;
 mod other_linkage;
 mod position;
 mod power_cut;

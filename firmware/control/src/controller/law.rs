@@ -180,6 +180,8 @@ impl Control {
         };
         let lower_speed = lowering_limit(inputs.lowering_dial, &calibration.operator, parameters);
         let lower_speed = lower_speed.min(most);
+        self.until_work = self.time_until_work(target, lower_speed);
+        let calibration = &self.calibration;
         let mut demand = self.position.demand(
             target,
             self.phase,

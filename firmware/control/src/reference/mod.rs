@@ -15,6 +15,7 @@
 pub mod draft_loop;
 pub mod draft_signal;
 pub mod hold;
+pub mod in_work;
 pub mod lag_loop;
 pub mod low_pass;
 pub mod received;
@@ -120,6 +121,15 @@ impl ReferenceControl {
     #[must_use]
     pub const fn draft(&self) -> Option<Newton> {
         self.sensed.measured
+    }
+
+    /// Whether the draft says that the implement is in the soil; `None` without plausible pins.
+    #[must_use]
+    pub fn in_soil(&self) -> Option<bool> {
+        match self.sensed.draft {
+            Draft::Measured(_) => Some(self.draft.is_in_soil()),
+            Draft::Suspect | Draft::Lost(_) => None,
+        }
     }
 
     /// One millisecond of the sensors, in any mode: what determines the set point must not keep them from being filtered and

@@ -9,7 +9,7 @@ pub mod trip;
 use super::units::{
     Count, Duty, MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp,
     MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, MillimetrePerSecond,
-    Newton, PerMille, RevolutionPerMinute, SupplyShare,
+    Millisecond, Newton, PerMille, RevolutionPerMinute, SupplyShare,
 };
 use fault::Fault;
 use field::{Reason, Trouble};
@@ -231,6 +231,10 @@ pub struct Outputs {
     pub trouble: Option<Trouble>,
     /// Draft without its noise, positive against the direction of travel; `None`: no pins, or they are lost.
     pub draft: Option<Newton>,
+    /// The implement is in work; `None` if that is not known.
+    pub in_work: Option<bool>,
+    /// Time until the implement is in work, 0 in work; `None` if it is not on its way there.
+    pub time_until_work: Option<Millisecond>,
 }
 
 /// Size of the image of [`Inputs`].
@@ -339,7 +343,7 @@ impl Inputs {
 
 impl Outputs {
     /// State, fault (0: none), trip (0: none) and reference with trouble (low and high half of a byte, 0: none), then the
-    /// values in the order of the fields. The draft is not in the image.
+    /// values in the order of the fields. Draft, in-work and the time until then are not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; OUTPUT_BYTES] {
         let mut writer = Writer::new([0; OUTPUT_BYTES]);
