@@ -5,6 +5,7 @@ mod current;
 mod draft;
 mod drawn_hitches;
 mod drifting_reference;
+mod engage;
 mod extra_travel;
 mod flooded_bus;
 mod from_measurement_to_motion;

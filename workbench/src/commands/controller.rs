@@ -27,7 +27,7 @@ const FIELD_HEADER: &str =
     Standard input is CSV: a header, then one line for each millisecond. Required columns: time_s, lever_deg, \
     rocker_angle_deg. Optional columns: cylinder_pressure_bar, pump_pressure_bar, oil_temperature_c, supply_v, \
     jog_deg_per_s, upper_limit_deg, lowering_dial_percent, engine_speed_rpm, measured_lift_current_a, \
-    measured_lower_current_a, and the switches transport_lock, hold, quick_lift, teach, consent, up_released, down_released (0 is off). An empty cell \
+    measured_lower_current_a, and the switches transport_lock, hold, quick_lift, teach, consent, up_released, down_released, engage (0 is off). An empty cell \
     is a missing sample. Each line is answered by one line with currents and state. The coils stay off until the lever has \
     been moved through the present angle.\n\n\
     Optional columns of draft and slip control, for a calibration with draft.fitted = 1: left_draft_pin_percent and \

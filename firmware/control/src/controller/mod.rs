@@ -25,6 +25,7 @@ use crate::estimation::travel_distances::TravelDistances;
 use crate::motion::position::PositionControl;
 use crate::motion::rate::RateControl;
 use crate::operator::button::ButtonGuard;
+use crate::operator::engage::EngageSwitch;
 use crate::operator::lever::SteadyLever;
 use crate::operator::mode::Mode;
 use crate::operator::{EngineWatch, Float, QuickLift};
@@ -69,6 +70,7 @@ pub struct Control {
     engine: EngineWatch,
     button: ButtonGuard,
     quick_lift: QuickLift,
+    engage: EngageSwitch,
     float: Float,
     lever: SteadyLever,
     reference: ReferenceControl,
@@ -124,6 +126,7 @@ impl Control {
             engine,
             button: ButtonGuard::default(),
             quick_lift: QuickLift::default(),
+            engage: EngageSwitch::default(),
             float: Float::default(),
             lever: SteadyLever::default(),
             reference: ReferenceControl::default(),

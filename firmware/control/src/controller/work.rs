@@ -26,6 +26,12 @@ impl Control {
             return None;
         }
         let position = &calibration.position;
+        // The set point of quick engagement is on its way to the lower limit.
+        let target = if self.reference.engages() {
+            target.min(calibration.linkage.travel(position.lower_limit))
+        } else {
+            target
+        };
         let threshold = calibration.linkage.travel(calibration.work.angle);
         if target > threshold {
             return None;

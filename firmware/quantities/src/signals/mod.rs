@@ -32,6 +32,8 @@ pub struct Switches {
     pub up_released: bool,
     /// The same of the button down.
     pub down_released: bool,
+    /// Quick engagement: lowers the implement into the soil while it is held.
+    pub engage: bool,
 }
 
 impl Switches {
@@ -47,6 +49,7 @@ impl Switches {
             self.quick_lift,
             self.teach,
             self.consent,
+            self.engage,
         ]
         .into_iter()
         .rev()
@@ -64,6 +67,7 @@ impl Switches {
             quick_lift: on(4),
             teach: on(5),
             consent: on(6),
+            engage: on(7),
         }
     }
 }
