@@ -97,6 +97,7 @@ fn outputs(fields: &[(String, String)]) -> String {
             (Some(kind), _) if CODES.contains(&kind) => {
                 format!("outputs.{name}.map_or(0, |code| code as i32),")
             }
+            (Some("bool"), _) => format!("outputs.{name}.map_or(word::ABSENT, i32::from),"),
             (Some(_), _) => format!("outputs.{name}.map_or(word::ABSENT, |value| value.0),"),
             (None, "State" | "bool") => format!("outputs.{name} as i32,"),
             (None, _) => format!("outputs.{name}.0,"),

@@ -1,5 +1,6 @@
 //! The reference layer as a whole: limits, changes without a step, and what it leaves to the lever.
 
+use hitch_control::operator::engage::Engagement;
 use hitch_control::reference::{ReferenceControl, Situation};
 use hitch_quantities::units::{
     Count, MicrometrePerSecond, MilliDegree, MillimetrePerSecond, Newton, PerMille, SupplyShare,
@@ -55,6 +56,7 @@ impl Bench {
         };
         let situation = Situation {
             lever: MilliDegree(self.lever),
+            engagement: Engagement::Off,
             angle: MilliDegree(self.set_point),
             highest: MilliDegree(self.highest),
             valve_speeds: [MicrometrePerSecond(150_000); 2],

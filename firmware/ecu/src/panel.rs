@@ -110,6 +110,8 @@ impl Panel {
                 consent: self.is_closed(Contact::Consent),
                 up_released: self.is_closed(Contact::UpReleased),
                 down_released: self.is_closed(Contact::DownReleased),
+                // No board has a contact of quick engagement.
+                engage: false,
             },
             ..inputs
         }

@@ -1,7 +1,8 @@
 //! Status of a step for the bus.
 
-use hitch_protocols::j1939::{Draft, ExitCode, HitchStatus, Limit, Troubles};
+use hitch_protocols::j1939::{Draft, ExitCode, HitchStatus, InWork, Limit, Troubles};
 use hitch_quantities::calibration::design_parameters::PositionParameters;
+use hitch_quantities::units::MilliDegree;
 use hitch_quantities::{Calibration, Fault, Inputs, Outputs, State};
 
 use crate::arbiter;
@@ -28,7 +29,13 @@ pub fn status(
         position: inputs
             .rocker_angle
             .map(|angle| arbiter::position(angle, limits)),
-        in_work: None,
+        in_work: match (calibration.work.angle, outputs.in_work) {
+            (MilliDegree::ZERO, _) => InWork::NotAvailable,
+            (_, None) => InWork::Error,
+            (_, Some(false)) => InWork::No,
+            (_, Some(true)) => InWork::Yes,
+        },
+        time_until_work: outputs.time_until_work,
         limit: limit(inputs, outputs, limits),
         exit,
         remote_permitted: exit == ExitCode::Clear

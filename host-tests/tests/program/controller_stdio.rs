@@ -255,6 +255,7 @@ fn draft_reason_and_lost_sensor_are_answered_where_the_columns_are() {
     let path = folder.path().join("fitted.toml");
     let fitted = hitch_workbench::field_loop::pass::fitted_with(|calibration| {
         calibration.slip.highest_limit.0 = 0;
+        calibration.work.angle.0 = 95_000;
     });
     std::fs::write(&path, calibration_file::write(&fitted)).unwrap();
     let header = [
@@ -266,7 +267,7 @@ fn draft_reason_and_lost_sensor_are_answered_where_the_columns_are() {
         ControllerProcess::answered(&header, &["--calibration", path.to_str().unwrap()]);
     assert_eq!(
         answer,
-        "lift_current_a,lower_current_a,state,target_deg,draft_n,set_point_reason,lost_sensor"
+        "lift_current_a,lower_current_a,state,target_deg,draft_n,set_point_reason,lost_sensor,in_work,time_until_work_s"
     );
     let mut step = 0;
     let mut last = |lever_deg: f64, pins: [f64; 2], steps: u32| {
@@ -290,9 +291,9 @@ fn draft_reason_and_lost_sensor_are_answered_where_the_columns_are() {
     let cells: Vec<&str> = answer.split(',').collect();
     let draft_n: f64 = cells[1].parse().unwrap();
     assert!((draft_n - 20_000.0).abs() < 50.0, "{answer}");
-    assert_eq!(cells[2..], ["draft", ""], "{answer}");
+    assert_eq!(cells[2..], ["draft", "", "1", "0.000"], "{answer}");
     let answer = last(90.0, [0.0, 56.25], 60);
-    assert!(answer.ends_with(",,holds,pin-range"), "{answer}");
+    assert!(answer.ends_with(",,holds,pin-range,1,0.000"), "{answer}");
 }
 
 #[test]

@@ -61,6 +61,7 @@ macro_rules! with_groups {
         $visit(&mut $calibration.draft $(, $argument)*)?;
         $visit(&mut $calibration.slip $(, $argument)*)?;
         $visit(&mut $calibration.ride $(, $argument)*)?;
+        $visit(&mut $calibration.work $(, $argument)*)?;
         $visit(&mut $calibration.safety $(, $argument)*)?;
     };
 }

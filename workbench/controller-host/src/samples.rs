@@ -34,7 +34,7 @@ pub const QUANTITIES: [&str; 20] = [
 pub const FIRST_OF_FIELD: usize = 12;
 
 /// Names of the operator's switches.
-pub const SWITCHES: [&str; 7] = [
+pub const SWITCHES: [&str; 8] = [
     "transport_lock",
     "hold",
     "quick_lift",
@@ -42,6 +42,7 @@ pub const SWITCHES: [&str; 7] = [
     "consent",
     "up_released",
     "down_released",
+    "engage",
 ];
 
 /// The inputs of a step: values in the order of [`QUANTITIES`], `None` for a sample that is missing, and the
@@ -62,6 +63,7 @@ pub fn inputs(
         consent,
         up_released,
         down_released,
+        engage,
     ] = switches;
     Inputs {
         lever: milli(0).map(MilliDegree),
@@ -100,6 +102,7 @@ pub fn inputs(
             consent,
             up_released,
             down_released,
+            engage,
         },
     }
 }

@@ -66,6 +66,7 @@ const SWITCHES_ABOUT: [&str; SWITCHES.len()] = [
     "consent to remote control, a button; no effect without an implement on a bus",
     "second contact of the button up, closed while it is released; counts with operator.second_contact",
     "second contact of the button down, closed while it is released; counts with operator.second_contact",
+    "quick engagement, lowers the implement into the soil while it is held",
 ];
 
 /// The controller with a calibration.

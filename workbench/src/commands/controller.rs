@@ -18,7 +18,8 @@ use crate::output::{self, targets};
 /// Header of the output.
 const HEADER: &str = "lift_current_a,lower_current_a,state";
 /// What it has besides, if the input has a column of draft or slip control.
-const FIELD_HEADER: &str = ",target_deg,draft_n,set_point_reason,lost_sensor";
+const FIELD_HEADER: &str =
+    ",target_deg,draft_n,set_point_reason,lost_sensor,in_work,time_until_work_s";
 
 /// Arguments of `hitch controller`.
 #[derive(Debug, clap::Args)]
@@ -27,13 +28,14 @@ const FIELD_HEADER: &str = ",target_deg,draft_n,set_point_reason,lost_sensor";
     Standard input is CSV: a header, then one line for each millisecond. Required columns: time_s, lever_deg, \
     rocker_angle_deg. Optional columns: cylinder_pressure_bar, pump_pressure_bar, oil_temperature_c, supply_v, \
     jog_deg_per_s, upper_limit_deg, lowering_dial_percent, engine_speed_rpm, measured_lift_current_a, \
-    measured_lower_current_a, and the switches transport_lock, hold, quick_lift, teach, consent, up_released, down_released (0 is off). An empty cell \
+    measured_lower_current_a, and the switches transport_lock, hold, quick_lift, teach, consent, up_released, down_released, engage (0 is off). An empty cell \
     is a missing sample. Each line is answered by one line with currents and state. The coils stay off until the lever has \
     been moved through the present angle.\n\n\
     Optional columns of draft and slip control, for a calibration with draft.fitted = 1: left_draft_pin_percent and \
     right_draft_pin_percent of the supply, ground_speed_m_per_s and wheel_speed_m_per_s (empty where no message was received), \
     draft_set_point_n, mix_percent, slip_limit_percent, and function_code (0 position, 1 draft, 2 mix, 3 depth limit). With one of \
-    them the answer has target_deg, draft_n, set_point_reason and lost_sensor besides.\n\n\
+    them the answer has target_deg, draft_n, set_point_reason, lost_sensor, in_work (0 or 1, empty without work.angle) and \
+    time_until_work_s (empty while the hitch is not lowered into work) besides.\n\n\
     Teaching is optional. Before the lever capture and away from the ends of travel, set teach to 1 and jog_deg_per_s to any \
     value but 0 (button held, after 20 ms in which it was released): within a minute the controller identifies the opening currents, the valve delays and the ends \
     of travel. The state is teaching, then taught, or not-taught with the reason. The result takes effect when teach \
@@ -130,15 +132,23 @@ fn reply(outputs: &Outputs, controller: &Controller) -> String {
     )
 }
 
-/// The cells of [`FIELD_HEADER`]; empty without a draft, a reason or a lost sensor.
+/// The cells of [`FIELD_HEADER`]; empty without a draft, a reason, a lost sensor, a threshold of work, or a move to it.
 fn field_reply(outputs: &Outputs) -> String {
     let draft = outputs.draft.map(|draft| draft.0.to_string());
+    let in_work = outputs
+        .in_work
+        .map(|in_work| i32::from(in_work).to_string());
+    let until_work = outputs
+        .time_until_work
+        .map(|time| format!("{:.3}", f64::from(time.0) * 1e-3));
     format!(
-        ",{:.3},{},{},{}",
+        ",{:.3},{},{},{},{},{}",
         f64::from(outputs.target.0) * 1e-3,
         draft.unwrap_or_default(),
         outputs.reference.map_or("", Reason::name),
-        outputs.trouble.map_or("", Trouble::name)
+        outputs.trouble.map_or("", Trouble::name),
+        in_work.unwrap_or_default(),
+        until_work.unwrap_or_default()
     )
 }
 

@@ -29,7 +29,7 @@ pub const RECORDED: [&str; 18] = [
 ];
 
 /// Contacts and their bits in the first word of a record.
-pub const RECORDED_BITS: [(&str, usize); 8] = [
+pub const RECORDED_BITS: [(&str, usize); 9] = [
     ("up_released", 22),
     ("down_released", 23),
     ("transport_lock", 24),
@@ -37,6 +37,7 @@ pub const RECORDED_BITS: [(&str, usize); 8] = [
     ("quick_lift", 26),
     ("teach", 27),
     ("consent", 28),
+    ("engage", 29),
     ("enable_line_fault", 30),
 ];
 

@@ -13,6 +13,7 @@ use hitch_quantities::{CoilCurrents, Fault, Inputs};
 
 use super::Control;
 use crate::motion::position::MoveReason;
+use crate::operator::engage::Engagement;
 use crate::operator::mode::Mode;
 use crate::operator::{lowering_limit, upper_limit};
 use crate::reference::{ReferenceControl, Situation};
@@ -84,9 +85,11 @@ impl Control {
         let calibration = &self.calibration;
         let noise_band = self.position.bands(&calibration.position).lever_deadband;
         let lever = self.lever.follow(sensed.set_point, noise_band + noise_band);
+        let engagement = self.engagement(lever, inputs);
+        let calibration = &self.calibration;
         let lever = self.quick_lift.set_point(lever, &calibration.operator);
         let highest = upper_limit(inputs.upper_limit, &calibration.position);
-        let aim = self.field_reference(lever, highest, sensed, inputs);
+        let aim = self.field_reference((lever, engagement), highest, sensed, inputs);
         let calibration = &self.calibration;
         let changed = self
             .position
@@ -114,16 +117,33 @@ impl Control {
         Some(target)
     }
 
-    /// The set point that draft and slip make of the lever; the lever on a machine without draft pins, and while an
-    /// implement or quick lift is in command.
+    /// The switch of quick engagement in position mode. It takes the hitch from quick lift, whose next press takes it back.
+    fn engagement(&mut self, lever: MilliDegree, inputs: &Inputs) -> Engagement {
+        let is_raised = self.quick_lift.is_raised();
+        let is_held = self.reference.engages();
+        if inputs.set_point.is_some() || is_raised && is_held {
+            self.engage.end();
+            return Engagement::Off;
+        }
+        let pressed = inputs.switches.engage;
+        let engagement = self.engage.step(pressed, lever, &self.calibration.lock);
+        if engagement == Engagement::Begins {
+            self.quick_lift.lower();
+        }
+        engagement
+    }
+
+    /// The set point that draft, slip and quick engagement make of the lever; the lever on a machine without draft pins, and
+    /// while an implement or quick lift is in command.
     fn field_reference(
         &mut self,
-        lever: MilliDegree,
+        (lever, engagement): (MilliDegree, Engagement),
         highest: MilliDegree,
         sensed: &Sensed,
         inputs: &Inputs,
     ) -> MilliDegree {
-        if !ReferenceControl::is_fitted(&self.calibration) {
+        let engages = engagement != Engagement::Off || self.reference.engages();
+        if !ReferenceControl::is_fitted(&self.calibration) && !engages {
             return lever;
         }
         if inputs.set_point.is_some() || self.quick_lift.is_raised() {
@@ -139,6 +159,7 @@ impl Control {
         ];
         let situation = Situation {
             lever,
+            engagement,
             angle: sensed.angle,
             highest,
             valve_speeds,
@@ -180,6 +201,8 @@ impl Control {
         };
         let lower_speed = lowering_limit(inputs.lowering_dial, &calibration.operator, parameters);
         let lower_speed = lower_speed.min(most);
+        self.until_work = self.time_until_work(target, lower_speed);
+        let calibration = &self.calibration;
         let mut demand = self.position.demand(
             target,
             self.phase,

@@ -10,7 +10,9 @@
 //! The caller reports what happens to the request: the regulated currents ([`Control::set_regulated_currents`]), a trip
 //! of the envelope ([`Control::fail`]), and ground contact ([`Control::accept_ground_contact`]).
 
-use hitch_quantities::units::{MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliDegree};
+use hitch_quantities::units::{
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliDegree, Millisecond,
+};
 use hitch_quantities::{CoilCurrents, Fault, Inputs, ValidCalibration};
 
 use crate::adaptation::valve_adaptation::ValveAdaptation;
@@ -23,10 +25,12 @@ use crate::estimation::travel_distances::TravelDistances;
 use crate::motion::position::PositionControl;
 use crate::motion::rate::RateControl;
 use crate::operator::button::ButtonGuard;
+use crate::operator::engage::EngageSwitch;
 use crate::operator::lever::SteadyLever;
 use crate::operator::mode::Mode;
 use crate::operator::{EngineWatch, Float, QuickLift};
 use crate::reference::ReferenceControl;
+use crate::reference::in_work::InWork;
 use crate::ride::RideDamping;
 use crate::sensing::sensors::{Sensed, Sensors};
 use crate::sequencing::drift_monitor::DriftMonitor;
@@ -42,6 +46,7 @@ mod modes;
 mod monitoring;
 mod report;
 mod ride;
+mod work;
 
 /// Output of a control step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,10 +70,14 @@ pub struct Control {
     engine: EngineWatch,
     button: ButtonGuard,
     quick_lift: QuickLift,
+    engage: EngageSwitch,
     float: Float,
     lever: SteadyLever,
     reference: ReferenceControl,
     ride: RideDamping,
+    in_work: InWork,
+    /// Time until a move of this step is in work.
+    until_work: Option<Millisecond>,
     position: PositionControl,
     rate: RateControl,
     motion: MotionObserver,
@@ -117,10 +126,13 @@ impl Control {
             engine,
             button: ButtonGuard::default(),
             quick_lift: QuickLift::default(),
+            engage: EngageSwitch::default(),
             float: Float::default(),
             lever: SteadyLever::default(),
             reference: ReferenceControl::default(),
             ride: RideDamping::default(),
+            in_work: InWork::default(),
+            until_work: None,
             position: PositionControl::default(),
             rate: RateControl::default(),
             motion: MotionObserver::default(),
@@ -189,6 +201,10 @@ impl Control {
         let sensed = self.sensors.judge(inputs, &self.calibration.sensors);
         let offset = self.calibration.hydraulics.pressure_offset;
         let sensed = sensed.map(|sensed| sensed.without_offset(offset));
+        let angle = sensed.map(|sensed| sensed.angle).ok();
+        self.in_work
+            .step(angle, self.reference.in_soil(), &self.calibration.work);
+        self.until_work = None;
         if RideDamping::is_fitted(&self.calibration) {
             let pressure = sensed.ok().and_then(|sensed| sensed.cylinder_pressure);
             self.ride.sense(inputs, pressure, &self.calibration.ride);

@@ -60,6 +60,7 @@ impl Control {
         self.quick_lift
             .press(inputs.switches.quick_lift, follows_lever);
         if !follows_lever {
+            self.engage.end();
             self.float.end();
             self.reference.end();
             self.ride.end();

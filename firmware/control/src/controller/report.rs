@@ -1,6 +1,6 @@
 //! Outputs of control.
 
-use hitch_quantities::units::MicrometrePerSecond;
+use hitch_quantities::units::{MicrometrePerSecond, Millisecond};
 use hitch_quantities::{Outputs, Reason, State};
 
 use super::Control;
@@ -64,6 +64,12 @@ impl Control {
                 .trouble()
                 .or(self.ride.trouble(&self.calibration)),
             draft: self.reference.draft(),
+            in_work: self.in_work.now(),
+            time_until_work: match self.in_work.now() {
+                Some(true) => Some(Millisecond::ZERO),
+                Some(false) => self.until_work,
+                None => None,
+            },
             ..Outputs::default()
         }
     }

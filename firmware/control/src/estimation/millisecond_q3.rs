@@ -17,6 +17,12 @@ impl MillisecondQ3 {
         Divisor::at_least_one(self.0.saturating_add(4) >> 3)
     }
 
+    /// The time in whole milliseconds.
+    #[must_use]
+    pub const fn rounded(self) -> Millisecond {
+        Millisecond(self.0.saturating_add(4) >> 3)
+    }
+
     pub(super) fn limited(self, limit: Self) -> Self {
         self.max(Self(limit.0.saturating_neg())).min(limit)
     }

@@ -425,6 +425,13 @@ impl MotionObserver {
         self.bias
     }
 
+    /// Lag of the lowering spool, with what moves have identified.
+    #[must_use]
+    pub fn lowering_lag(&self, hydraulics: &HydraulicParameters) -> Millisecond {
+        let [_, lower] = self.lags(hydraulics);
+        (lower + self.lag_correction).rounded()
+    }
+
     /// Predicts where the piston stops.
     #[must_use]
     pub fn stop_prediction(&self, hydraulics: &HydraulicParameters) -> StopPrediction {

@@ -4,3 +4,4 @@ pub mod bands;
 pub mod position;
 pub mod rate;
 pub mod stop_band;
+pub mod time_until_work;

@@ -1,6 +1,7 @@
-//! Operator inputs besides the lever: engine, rate dial, quick lift and float.
+//! Operator inputs besides the lever: engine, rate dial, quick lift, quick engagement and float.
 
 pub mod button;
+pub mod engage;
 pub mod lever;
 pub mod lock;
 pub mod mode;
@@ -65,6 +66,11 @@ impl QuickLift {
         }
         self.pressed = pressed;
         self.raised &= follows_lever;
+    }
+
+    /// The set point is the lever's again.
+    pub const fn lower(&mut self) {
+        self.raised = false;
     }
 
     /// Whether the set point is the raised one.

@@ -43,6 +43,14 @@ impl Gains {
         }
     }
 
+    /// What a quantity behind the implement's lag will be once the implement has followed: `x + T x'`, with `x'` of a low-pass
+    /// at the crossover, whose output is `slow`.
+    #[must_use]
+    pub fn ahead(self, quantity: i32, slow: i32) -> i32 {
+        let away = quantity.saturating_sub(slow);
+        quantity.saturating_add(mul_shift_16(away, self.proportional))
+    }
+
     /// The proportional part of an error.
     #[must_use]
     pub fn proportional(self, error: MilliDegree) -> MilliDegree {

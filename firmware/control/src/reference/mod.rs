@@ -15,6 +15,7 @@
 pub mod draft_loop;
 pub mod draft_signal;
 pub mod hold;
+pub mod in_work;
 pub mod lag_loop;
 pub mod low_pass;
 pub mod received;
@@ -35,6 +36,8 @@ use selector::{Active, Choice};
 use slip_guard::SlipGuard;
 use slip_signal::SlipSignal;
 
+use crate::operator::engage::Engagement;
+
 /// Weight of the draft without a mix dial.
 const MIDDLE: PerMille = PerMille(500);
 
@@ -43,6 +46,8 @@ const MIDDLE: PerMille = PerMille(500);
 pub struct Situation {
     /// Lever, without its noise.
     pub lever: MilliDegree,
+    /// Switch of quick engagement.
+    pub engagement: Engagement,
     /// Rocker angle.
     pub angle: MilliDegree,
     /// Upper limit of the set point.
@@ -107,6 +112,12 @@ impl ReferenceControl {
         self.reason
     }
 
+    /// Whether quick engagement lowers the hitch.
+    #[must_use]
+    pub const fn engages(&self) -> bool {
+        matches!(self.active, Active::Engages(_))
+    }
+
     /// The lost sensor; a pin before a speed.
     #[must_use]
     pub fn trouble(&self) -> Option<Trouble> {
@@ -120,6 +131,15 @@ impl ReferenceControl {
     #[must_use]
     pub const fn draft(&self) -> Option<Newton> {
         self.sensed.measured
+    }
+
+    /// Whether the draft says that the implement is in the soil; `None` without plausible pins.
+    #[must_use]
+    pub fn in_soil(&self) -> Option<bool> {
+        match self.sensed.draft {
+            Draft::Measured(_) => Some(self.draft.is_in_soil()),
+            Draft::Suspect | Draft::Lost(_) => None,
+        }
     }
 
     /// One millisecond of the sensors, in any mode: what determines the set point must not keep them from being filtered and
@@ -145,13 +165,23 @@ impl ReferenceControl {
         calibration: &Calibration,
     ) -> MilliDegree {
         let Sensed { draft, slip, .. } = self.sensed;
-        let present = self.used.unwrap_or(situation.lever);
+        // Quick engagement begins where the hitch is, which quick lift may have raised above the lever.
+        let begins = situation.engagement == Engagement::Begins;
+        let lever_or_hitch = if begins {
+            situation.angle
+        } else {
+            situation.lever
+        };
+        let present = self.used.unwrap_or(lever_or_hitch);
         let mix = mix(inputs);
         let gains = self.gains(calibration.draft.crossover, calibration);
         let errors = errors(draft, present, mix, inputs, situation, calibration);
+        let has_draft = self.has_draft(inputs.draft_set_point, calibration);
         let choice = Choice {
             function: selected(inputs),
             errors,
+            has_draft,
+            engagement: situation.engagement,
             lost: matches!(draft, Draft::Lost(_)),
             in_soil: self.draft.is_in_soil(),
             lever: situation.lever,
@@ -181,6 +211,7 @@ impl ReferenceControl {
         let (function, demand) = match (self.active, choice.errors) {
             (Active::Lever, _) => (None, situation.lever),
             (Active::Holds(hold), _) => (None, hold.set_point()),
+            (Active::Engages(_), errors) => (None, deepest(choice, errors, calibration)),
             // The pins are in doubt: a move ends.
             (Active::Draft(function, _), None) => (Some(function), choice.here()),
             (Active::Draft(function, control), Some(errors)) => {
@@ -208,6 +239,7 @@ impl ReferenceControl {
             control.follow(errors, gains, demand, used);
         }
         let step = match self.active {
+            Active::Engages(_) => MilliDegree::ZERO,
             Active::Draft(..) if choice.errors.is_none() => MilliDegree::ZERO,
             Active::Holds(_) if self.reason != Some(Reason::Slip) => MilliDegree::ZERO,
             _ => calibration.draft.step.scaled(weight.0, Divisor::THOUSAND),
@@ -243,6 +275,21 @@ impl ReferenceControl {
         Ok(slip.map(|slip| (slip, limit)))
     }
 
+    /// Whether the draft will have reached its set point once the implement has followed the links; during quick engagement.
+    fn has_draft(&mut self, set_point: Option<Newton>, calibration: &Calibration) -> bool {
+        let corner = calibration.draft.raised_filter;
+        let gains = self.gains(corner, calibration);
+        let (Active::Engages(filter), Draft::Measured(draft), Some(set_point)) =
+            (&mut self.active, self.sensed.draft, set_point)
+        else {
+            return false;
+        };
+        let slow = filter.step(draft.0, corner);
+        let ahead = Newton(gains.ahead(draft.0, slow));
+        let band = set_point.scaled(calibration.draft.dead_band.0, Divisor::THOUSAND);
+        ahead >= set_point - band
+    }
+
     fn gains(&self, crossover: MilliHertz, calibration: &Calibration) -> Gains {
         let parameters = &calibration.draft;
         let speed = self.slip.ground_speed().unwrap_or(parameters.assumed_speed);
@@ -261,6 +308,7 @@ impl ReferenceControl {
         }
         match (function, self.active) {
             (_, Active::Holds(_)) => Some(Reason::Holds),
+            (_, Active::Engages(_)) => Some(Reason::Engages),
             (Some(_), _) if demand < lowest => Some(Reason::Floor),
             (Some(_), _) if demand > limited => Some(Reason::Ceiling),
             (Some(Function::Draft), _) => Some(Reason::Draft),
@@ -321,6 +369,18 @@ fn lowest(
         _ => lever - calibration.draft.margin,
     };
     floor.max(calibration.position.lower_limit)
+}
+
+/// Where quick engagement lowers to: as deep as the selected function may, and without one to the lower limit. It stays where it
+/// is while the pins are in doubt.
+fn deepest(choice: &Choice, errors: Option<Errors>, calibration: &Calibration) -> MilliDegree {
+    match (choice.function, errors) {
+        (Function::Position, _) => calibration.position.lower_limit,
+        (_, None) => choice.present,
+        (function, Some(_)) => {
+            lowest(Some(function), choice.lever, calibration).min(choice.present)
+        }
+    }
 }
 
 /// The set point `wanted`, no further from the present one than the valves move the hitch in a step.

@@ -11,6 +11,10 @@
 //! ```
 //!
 //! The draft loop begins at the present set point, and begins there anew when another function of the draft is selected.
+//!
+//! Quick engagement begins in any of them. It lowers the set point until the draft is there, ahead of the implement's lag, and
+//! hands over to the function of the draft; with its release it hands over to that function in the soil, and otherwise to the
+//! lever.
 
 use hitch_quantities::Function;
 use hitch_quantities::calibration::design_parameters::LockParameters;
@@ -19,6 +23,8 @@ use hitch_quantities::units::MilliDegree;
 use super::draft_loop::{DraftLoop, Errors};
 use super::hold::Hold;
 use super::lag_loop::Gains;
+use super::low_pass::LowPass;
+use crate::operator::engage::Engagement;
 
 /// How far a held set point may be from the hitch: within it, a hitch at rest is not moved by the end of a function.
 const NEAR: MilliDegree = MilliDegree(1_000);
@@ -33,6 +39,8 @@ pub enum Active {
     Draft(Function, DraftLoop),
     /// The depth at the end of a function.
     Holds(Hold),
+    /// Quick engagement, with a low-pass on the draft.
+    Engages(LowPass),
 }
 
 /// What a selection is made from.
@@ -42,6 +50,10 @@ pub struct Choice {
     pub function: Function,
     /// Errors of the draft, while the pins are plausible.
     pub errors: Option<Errors>,
+    /// The draft will have reached its set point once the implement has followed the links.
+    pub has_draft: bool,
+    /// Switch of quick engagement.
+    pub engagement: Engagement,
     /// The pins are lost.
     pub lost: bool,
     /// The implement is in the soil.
@@ -61,7 +73,11 @@ impl Active {
     #[must_use]
     pub fn next(self, choice: &Choice, gains: Gains, lock: &LockParameters) -> Self {
         let is_draft = choice.function != Function::Position;
+        if choice.engagement == Engagement::Begins {
+            return Self::Engages(LowPass::default());
+        }
         match self {
+            Self::Engages(_) => choice.engaged(self, is_draft, gains),
             Self::Lever => match choice.errors {
                 Some(errors) if is_draft && choice.in_soil => choice.begun(errors, gains),
                 _ => self,
@@ -84,6 +100,26 @@ impl Active {
 }
 
 impl Choice {
+    /// One step of quick engagement.
+    fn engaged(&self, present: Active, is_draft: bool, gains: Gains) -> Active {
+        let is_held = self.engagement == Engagement::Held;
+        match self.errors {
+            _ if is_draft && self.lost => self.held(),
+            Some(errors) if is_draft && self.takes_over(is_held) => self.begun(errors, gains),
+            _ if is_held => present,
+            _ => Active::Lever,
+        }
+    }
+
+    /// Whether the function of the draft takes over.
+    const fn takes_over(&self, is_held: bool) -> bool {
+        if is_held {
+            self.in_soil && self.has_draft
+        } else {
+            self.in_soil
+        }
+    }
+
     /// The selected function of the draft, from the present set point on.
     fn begun(&self, errors: Errors, gains: Gains) -> Active {
         Active::Draft(self.function, DraftLoop::from(self.present, errors, gains))

@@ -3,7 +3,7 @@
 //! A one-byte quantity is data up to 250; 251 to 253 are reserved, 254 says that the sender's signal is
 //! bad, 255 that there is none. Unused bits are ones.
 
-use hitch_quantities::units::{Newton, PerMille};
+use hitch_quantities::units::{Millisecond, Newton, PerMille};
 
 use super::trouble::Troubles;
 
@@ -21,6 +21,8 @@ const NEWTON_PER_BIT: i32 = 10;
 const LEAST_DRAFT: Newton = Newton(-320_000);
 /// Largest raw value of the draft that is data.
 const LARGEST_DRAFT: i32 = 0xFAFF;
+/// Largest raw value of a time that is data.
+const LARGEST_TIME: i32 = 0xFAFF;
 /// Raw value of the draft: the signal is bad.
 const DRAFT_ERROR: u16 = 0xFE00;
 
@@ -29,8 +31,10 @@ const DRAFT_ERROR: u16 = 0xFE00;
 pub struct HitchStatus {
     /// Position, 0 is lowest; `None` if the sensor is bad.
     pub position: Option<PerMille>,
-    /// In work; `None` if that isn't known.
-    pub in_work: Option<bool>,
+    /// In work, or not.
+    pub in_work: InWork,
+    /// Time until then; `None` if the implement is not on its way there.
+    pub time_until_work: Option<Millisecond>,
     /// What limits the set point just now.
     pub limit: Limit,
     /// Why the hitch can't be commanded, or [`ExitCode::Clear`].
@@ -44,6 +48,32 @@ pub struct HitchStatus {
     pub draft: Draft,
     /// What is wrong.
     pub troubles: Troubles,
+}
+
+/// In-work indication (SPN 1877), 2 bits: the hitch is below or above an adjustable threshold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum InWork {
+    /// Out of work.
+    No = 0,
+    /// In work.
+    Yes = 1,
+    /// The sensor is bad.
+    Error = 2,
+    /// There is no threshold.
+    #[default]
+    NotAvailable = 3,
+}
+
+impl InWork {
+    const fn from_bits(bits: u8) -> Self {
+        match bits & 0x03 {
+            0 => Self::No,
+            1 => Self::Yes,
+            2 => Self::Error,
+            _ => Self::NotAvailable,
+        }
+    }
 }
 
 /// What is known of the draft: the force of the implement against the direction of travel.
@@ -167,8 +197,8 @@ exit_codes! {
 pub struct StatusMessage {
     /// Position, raw: 0.4 % a bit.
     pub position: u8,
-    /// In work; `None` if not available.
-    pub in_work: Option<bool>,
+    /// In work, or not.
+    pub in_work: InWork,
     /// Limit status.
     pub limit: LimitStatus,
     /// Nominal lower link force, raw: 0.8 % a bit from -100 %.
@@ -196,15 +226,10 @@ impl StatusMessage {
     /// As in the message.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 8] {
-        let in_work = match self.in_work {
-            Some(false) => 0b00,
-            Some(true) => 0b01,
-            None => 0b11,
-        };
         let [draft_low, draft_high] = self.draft.to_le_bytes();
         [
             self.position,
-            (in_work << 6) | ((self.limit as u8) << 3) | 0b111,
+            ((self.in_work as u8) << 6) | ((self.limit as u8) << 3) | 0b111,
             self.lower_link_force,
             draft_low,
             draft_high,
@@ -220,11 +245,7 @@ impl StatusMessage {
         let [position, flags, lower_link_force, low, high, exit, _, _] = *bytes;
         Self {
             position,
-            in_work: match flags >> 6 {
-                0b00 => Some(false),
-                0b01 => Some(true),
-                _ => None,
-            },
+            in_work: InWork::from_bits(flags >> 6),
             limit: LimitStatus::from_bits(flags >> 3),
             lower_link_force,
             draft: u16::from_le_bytes([low, high]),
@@ -234,13 +255,29 @@ impl StatusMessage {
 }
 
 /// What there is of the facilities of a tractor (ISO 11783-7, tractor facilities response): the position of the rear
-/// hitch, its draft if `has_draft`, and, if `is_commanded`, its commands and their limit status. A bit that is 0 promises
+/// hitch, its in-work indication if `has_in_work`, its draft if `has_draft`, and, if `is_commanded`, its commands and their limit status. A bit that is 0 promises
 /// nothing.
 #[must_use]
-pub const fn facilities(is_commanded: bool, has_draft: bool) -> [u8; 8] {
+pub const fn facilities(is_commanded: bool, has_draft: bool, has_in_work: bool) -> [u8; 8] {
     let commands = if is_commanded { 0b1000_1000 } else { 0 };
     let draft = if has_draft { 0b0000_0100 } else { 0 };
-    [0, 0b1000_0000, draft, commands, 0, 0, 0, 0]
+    let position = if has_in_work {
+        0b1100_0000
+    } else {
+        0b1000_0000
+    };
+    [0, position, draft, commands, 0, 0, 0, 0]
+}
+
+/// Time until the implement is in work, in bytes 1 and 2: a millisecond a bit, and 65535 while it is not on its way there. The
+/// group is a proprietary one: no public group has this time.
+#[must_use]
+pub fn time_until_work(time: Option<Millisecond>) -> [u8; 8] {
+    let raw = time.map_or(u16::MAX, |time| {
+        u16::try_from(time.0.clamp(0, LARGEST_TIME)).unwrap_or(u16::MAX)
+    });
+    let [low, high] = raw.to_le_bytes();
+    [low, high, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF]
 }
 
 /// What an implement asks of the rear hitch (SPN 1875).

@@ -52,6 +52,8 @@ impl Pgn {
     pub const HITCH_MOTION: Self = Self(0xFF45);
     /// Proprietary B: pressures and supply.
     pub const HITCH_PRESSURES: Self = Self(0xFF46);
+    /// Proprietary B: time until the implement is in work.
+    pub const HITCH_WORK: Self = Self(0xFF47);
     /// Active trouble codes.
     pub const DM1: Self = Self(0xFECA);
     /// Previously active trouble codes.

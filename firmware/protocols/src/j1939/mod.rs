@@ -28,7 +28,7 @@ pub mod trouble;
 mod trouble_finder;
 
 pub use diagnostics::Variant;
-pub use hitch::{Draft, ExitCode, HitchCommand, HitchStatus, Limit, LimitStatus};
+pub use hitch::{Draft, ExitCode, HitchCommand, HitchStatus, InWork, Limit, LimitStatus};
 pub use id::{GLOBAL, Id, NULL, Pgn};
 pub use measured::MeasuredBroadcast;
 pub use name::{Name, NameFields};

@@ -10,7 +10,9 @@ use super::engine::EngineSpeed;
 use super::ground_speed::GroundSpeed;
 use super::heartbeat;
 use super::heartbeat::{Heartbeat, Monitor};
-use super::hitch::{Draft, HitchCommand, HitchStatus, StatusMessage, facilities};
+use super::hitch::{
+    Draft, HitchCommand, HitchStatus, InWork, StatusMessage, facilities, time_until_work,
+};
 use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::machine_speed::MachineSpeed;
 use super::name::Name;
@@ -82,6 +84,8 @@ pub struct Node {
     /// When somebody was asked for its claim last.
     asked_for_claim_ms: Option<u32>,
     last_status: Option<([u8; 8], u32)>,
+    /// When the time until in-work was sent last.
+    work_sent_ms: Option<u32>,
 }
 
 impl Node {
@@ -109,6 +113,7 @@ impl Node {
             unknown: None,
             asked_for_claim_ms: None,
             last_status: None,
+            work_sent_ms: None,
         }
     }
 
@@ -303,6 +308,7 @@ impl Node {
         };
         claim
             .or_else(|| self.hitch_status(source, now_ms, status))
+            .or_else(|| self.hitch_work(source, now_ms, status))
             .or_else(|| self.beat(source, now_ms))
             .or_else(|| self.transport.poll(source, now_ms))
             .or_else(|| self.periodic_dm1(source, now_ms))
@@ -325,6 +331,19 @@ impl Node {
         self.last_status = Some((bytes, now_ms));
         self.remote.reported(message.position);
         Some(broadcast(Pgn::REAR_HITCH_STATUS, STATUS_PRIORITY, source).frame(bytes))
+    }
+
+    /// Time until the implement is in work, if there is a threshold.
+    fn hitch_work(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
+        let is_due = self
+            .work_sent_ms
+            .is_none_or(|sent| since_ms(sent, now_ms) >= STATUS_PERIOD_MS);
+        if status.in_work == InWork::NotAvailable || !is_due {
+            return None;
+        }
+        self.work_sent_ms = Some(now_ms);
+        let id = broadcast(Pgn::HITCH_WORK, DIAGNOSTIC_PRIORITY, source);
+        Some(id.frame(time_until_work(status.time_until_work)))
     }
 
     fn status_message(&self, status: &HitchStatus, now_ms: u32) -> StatusMessage {
@@ -391,7 +410,11 @@ impl Node {
                 return Some(broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
             }
             Pgn::TRACTOR_FACILITIES => {
-                let bytes = facilities(self.remote.is_offered(), status.draft != Draft::NotFitted);
+                let bytes = facilities(
+                    self.remote.is_offered(),
+                    status.draft != Draft::NotFitted,
+                    status.in_work != InWork::NotAvailable,
+                );
                 return Some(broadcast(request.group, DIAGNOSTIC_PRIORITY, source).frame(bytes));
             }
             Pgn::DM1 => self.diagnostics.dm1(),

@@ -48,7 +48,6 @@ impl Bus {
             node: Node::new(settings),
             status: HitchStatus {
                 position: Some(PerMille(620)),
-                in_work: Some(true),
                 remote_permitted: true,
                 exit: ExitCode::Clear,
                 ..HitchStatus::default()

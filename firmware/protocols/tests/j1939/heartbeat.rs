@@ -1,7 +1,7 @@
 //! Heartbeats, the node's own and an implement's, and the facilities that it promises.
 
 use hitch_protocols::j1939::hitch::StatusMessage;
-use hitch_protocols::j1939::{Draft, ExitCode, HitchCommand, Pgn, Remote, Variant};
+use hitch_protocols::j1939::{Draft, ExitCode, HitchCommand, InWork, Pgn, Remote, Variant};
 use hitch_quantities::calibration::design_parameters::RemoteParameters;
 use hitch_quantities::units::{Count, PerMille};
 
@@ -178,4 +178,9 @@ fn facilities_are_told_who_asks_or_says_what_it_needs() {
     bus.run(10);
     let with_draft = [0, 0x80, 0b100, 0, 0, 0, 0, 0];
     assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), with_draft);
+    bus.status.in_work = InWork::Error;
+    bus.ask(Pgn::TRACTOR_FACILITIES, 0xFF);
+    bus.run(10);
+    let with_in_work = [0, 0xC0, 0b100, 0, 0, 0, 0, 0];
+    assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), with_in_work);
 }

@@ -3,9 +3,10 @@
 use hitch_protocols::can::{ExtendedId, Frame};
 use hitch_protocols::j1939::hitch::{StatusMessage, position, raw_position};
 use hitch_protocols::j1939::{
-    Draft, ExitCode, HitchCommand, HitchStatus, Id, LimitStatus, Name, NameFields, Pgn, Variant,
+    Draft, ExitCode, HitchCommand, HitchStatus, Id, InWork, LimitStatus, Name, NameFields, Pgn,
+    Variant,
 };
-use hitch_quantities::units::{Newton, PerMille};
+use hitch_quantities::units::{Millisecond, Newton, PerMille};
 
 use crate::bus::Bus;
 
@@ -70,7 +71,7 @@ fn the_reference_status_is_encoded_and_decoded() {
     let bytes = [0x9B, 0x47, 0xC8, 0xFF, 0x7D, 0xC0, 0xFF, 0xFF];
     let message = StatusMessage {
         position: 155,
-        in_work: Some(true),
+        in_work: InWork::Yes,
         limit: LimitStatus::NotLimited,
         lower_link_force: 200,
         draft: 32_255,
@@ -84,7 +85,7 @@ fn the_reference_status_is_encoded_and_decoded() {
 fn a_hitch_without_force_sensors_says_so() {
     let status = HitchStatus {
         position: Some(PerMille(620)),
-        in_work: Some(true),
+        in_work: InWork::Yes,
         ..HitchStatus::default()
     };
     let message = StatusMessage::new(&status, LimitStatus::OperatorLimited, ExitCode::LockedOut);
@@ -121,6 +122,38 @@ fn a_draft_has_ten_newton_a_bit_and_a_lost_one_is_an_error() {
         };
         let message = StatusMessage::new(&status, LimitStatus::NotLimited, ExitCode::Clear);
         assert_eq!(message.draft, raw, "{draft:?}");
+    }
+}
+
+#[test]
+fn in_work_has_two_bits_and_the_time_until_then_a_millisecond_a_bit() {
+    let mut bus = Bus::claimed(Variant::J1939);
+    bus.run(1_000);
+    assert!(
+        bus.take(Pgn::HITCH_WORK).is_empty(),
+        "no threshold, no time"
+    );
+    for (in_work, time_ms, bits, raw) in [
+        (InWork::No, None, 0b00, [0xFF, 0xFF]),
+        (InWork::No, Some(1_234), 0b00, [0xD2, 0x04]),
+        (InWork::No, Some(i32::MAX), 0b00, [0xFF, 0xFA]),
+        (InWork::Yes, Some(0), 0b01, [0, 0]),
+        (InWork::Error, None, 0b10, [0xFF, 0xFF]),
+    ] {
+        bus.status.in_work = in_work;
+        bus.status.time_until_work = time_ms.map(Millisecond);
+        bus.run(200);
+        bus.sent.clear();
+        bus.run(1_000);
+        let of = |pgn| bus.sent.iter().filter(move |sent| sent.id.pgn == pgn);
+        assert_eq!(of(Pgn::HITCH_WORK).count(), 10);
+        let [low, high] = raw;
+        let expected = [low, high, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
+        assert!(of(Pgn::HITCH_WORK).all(|sent| sent.data() == expected));
+        let status = of(Pgn::REAR_HITCH_STATUS).next().unwrap();
+        let status = StatusMessage::from_bytes(status.frame.eight().unwrap());
+        assert_eq!(status.in_work, in_work);
+        assert_eq!(status.to_bytes()[1] >> 6, bits);
     }
 }
 

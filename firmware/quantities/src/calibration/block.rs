@@ -5,13 +5,13 @@ use super::design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
-use super::field_parameters::{DraftParameters, RideParameters, SlipParameters};
+use super::field_parameters::{DraftParameters, RideParameters, SlipParameters, WorkParameters};
 use super::linkage::LinkageTable;
 use super::valve_table::ValveTable;
 use crate::units::{MicroLitrePerSecond, MilliAmp};
 
 /// Layout of the block that this firmware reads.
-pub const CALIBRATION_VERSION: u32 = 7;
+pub const CALIBRATION_VERSION: u32 = 8;
 
 /// Largest flow in a table: ten times the pump's, and far from where products saturate.
 pub(super) const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
@@ -62,6 +62,8 @@ pub struct Calibration {
     pub slip: SlipParameters,
     /// Ride damping.
     pub ride: RideParameters,
+    /// When the implement is in work.
+    pub work: WorkParameters,
     /// Safety envelope.
     pub safety: SafetyParameters,
     /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.

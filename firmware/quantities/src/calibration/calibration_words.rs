@@ -7,7 +7,7 @@ use super::design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
-use super::field_parameters::{DraftParameters, RideParameters, SlipParameters};
+use super::field_parameters::{DraftParameters, RideParameters, SlipParameters, WorkParameters};
 use super::linkage::LINKAGE_POINTS;
 use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
 use super::valve_table::{VALVE_POINTS, ValveTable};
@@ -54,7 +54,7 @@ const fn full_name(group: &str, name: &str) -> u32 {
 }
 
 /// The groups in the order of the block.
-pub const GROUPS: [Group; 17] = [
+pub const GROUPS: [Group; 18] = [
     group::<HydraulicParameters>(),
     group::<SensorParameters>(),
     group::<LockParameters>(),
@@ -71,6 +71,7 @@ pub const GROUPS: [Group; 17] = [
     group::<DraftParameters>(),
     group::<SlipParameters>(),
     group::<RideParameters>(),
+    group::<WorkParameters>(),
     group::<SafetyParameters>(),
 ];
 
@@ -402,6 +403,7 @@ impl Calibration {
             .or_else(|| of(&self.draft, at))
             .or_else(|| of(&self.slip, at))
             .or_else(|| of(&self.ride, at))
+            .or_else(|| of(&self.work, at))
             .or_else(|| of(&self.safety, at))
     }
 

@@ -188,6 +188,9 @@ pub const CLASSES: &[Classified] = &[
     row("ride", DOWN, &[
         "fitted", "speed", "band", "time_out",
     ]),
+    row("work", Class::Live, &[
+        "angle", "band",
+    ]),
     row("safety", UP, &[
         "arming_movement", "shortest_step", "supply_min", "following_share", "following_speed",
         "sensor_supply_min",

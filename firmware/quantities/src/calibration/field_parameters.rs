@@ -1,4 +1,4 @@
-//! Calibration of draft, mix, depth limit, slip guard and ride damping.
+//! Calibration of draft, mix, depth limit, slip guard, ride damping and the in-work state.
 //!
 //! The reasons refer to a three-furrow plough of 1.2 m at 25 cm and 1.8 m/s in loam, about 18 kN, on two pins of 40 kN.
 
@@ -117,5 +117,15 @@ parameter_group! {
         height: PerMille = 600, 200..=950;
         /// Time after which a ground speed that was not received is lost: five periods of 100 ms. At most a second, in which a tractor that brakes stands.
         time_out: Millisecond = 500, 100..=1_000;
+    }
+}
+
+parameter_group! {
+    /// When the implement is in work.
+    WorkParameters, "work" {
+        /// Rocker angle below which the implement is in work: where it touches the ground. 0: not set, and in-work is not available.
+        angle: MilliDegree = 0, 0..=360_000;
+        /// Above `angle` plus this it is out of work. Between both the draft decides; without it the state stays. 4.5 cm, the depth that draft control works at least.
+        band: MilliDegree = 5_000, 100..=45_000;
     }
 }

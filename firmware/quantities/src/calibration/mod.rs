@@ -378,6 +378,7 @@ impl Calibration {
         self.draft.visit(visit);
         self.slip.visit(visit);
         self.ride.visit(visit);
+        self.work.visit(visit);
         self.safety.visit(visit);
         visit_unsigned(&mut self.checksum, visit);
     }

@@ -6,7 +6,7 @@ use super::design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
-use super::field_parameters::{DraftParameters, RideParameters, SlipParameters};
+use super::field_parameters::{DraftParameters, RideParameters, SlipParameters, WorkParameters};
 use super::linkage::{LINKAGE_POINTS, LinkageTable};
 use super::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
 use crate::units::{MicroLitrePerSecond, Micrometre, MilliAmp, MilliDegree};
@@ -126,6 +126,7 @@ impl Calibration {
             draft: DraftParameters::NOMINAL,
             slip: SlipParameters::NOMINAL,
             ride: RideParameters::NOMINAL,
+            work: WorkParameters::NOMINAL,
             safety: SafetyParameters::NOMINAL,
             checksum: 0,
         }

@@ -52,11 +52,13 @@ pub enum Reason {
     Holds = 8,
     /// Ride damping moves the hitch about the lever's set point.
     Ride = 9,
+    /// The switch of quick engagement is held: the hitch is lowered into the soil.
+    Engages = 10,
 }
 
 impl Reason {
     /// All of them, in the order of their codes, which begin at 1.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Draft,
         Self::Mix,
         Self::DepthLimit,
@@ -66,6 +68,7 @@ impl Reason {
         Self::AboveGround,
         Self::Holds,
         Self::Ride,
+        Self::Engages,
     ];
 
     /// Name as it appears in text outputs.
@@ -81,6 +84,7 @@ impl Reason {
             Self::AboveGround => "above-ground",
             Self::Holds => "holds",
             Self::Ride => "ride",
+            Self::Engages => "engages",
         }
     }
 }

@@ -9,7 +9,7 @@ pub mod trip;
 use super::units::{
     Count, Duty, MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp,
     MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, MillimetrePerSecond,
-    Newton, PerMille, RevolutionPerMinute, SupplyShare,
+    Millisecond, Newton, PerMille, RevolutionPerMinute, SupplyShare,
 };
 use fault::Fault;
 use field::{Reason, Trouble};
@@ -32,6 +32,8 @@ pub struct Switches {
     pub up_released: bool,
     /// The same of the button down.
     pub down_released: bool,
+    /// Quick engagement: lowers the implement into the soil while it is held.
+    pub engage: bool,
 }
 
 impl Switches {
@@ -47,6 +49,7 @@ impl Switches {
             self.quick_lift,
             self.teach,
             self.consent,
+            self.engage,
         ]
         .into_iter()
         .rev()
@@ -64,6 +67,7 @@ impl Switches {
             quick_lift: on(4),
             teach: on(5),
             consent: on(6),
+            engage: on(7),
         }
     }
 }
@@ -231,6 +235,10 @@ pub struct Outputs {
     pub trouble: Option<Trouble>,
     /// Draft without its noise, positive against the direction of travel; `None`: no pins, or they are lost.
     pub draft: Option<Newton>,
+    /// The implement is in work; `None` if that is not known.
+    pub in_work: Option<bool>,
+    /// Time until the implement is in work, 0 in work; `None` if it is not on its way there.
+    pub time_until_work: Option<Millisecond>,
 }
 
 /// Size of the image of [`Inputs`].
@@ -339,7 +347,7 @@ impl Inputs {
 
 impl Outputs {
     /// State, fault (0: none), trip (0: none) and reference with trouble (low and high half of a byte, 0: none), then the
-    /// values in the order of the fields. The draft is not in the image.
+    /// values in the order of the fields. Draft, in-work and the time until then are not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; OUTPUT_BYTES] {
         let mut writer = Writer::new([0; OUTPUT_BYTES]);
