@@ -7,6 +7,7 @@ use core::hint::black_box;
 
 use hitch_control::current::Regulation;
 use hitch_control::current::pi::{Gains, ProportionalIntegral, VoltageRange};
+use hitch_control::operator::engage::Engagement;
 use hitch_control::reference::{ReferenceControl, Situation};
 use hitch_control::valve::valve_map::{ValveCurves, ValveMap};
 use hitch_quantities::units::{
@@ -213,6 +214,7 @@ fn time_reference(stopwatch: &Stopwatch) {
             angle: MilliDegree(62_000 + step % 11 * 1_000),
             highest: MilliDegree(75_000),
             valve_speeds: [MicrometrePerSecond(150_000); 2],
+            engagement: engagement(step),
         };
         let ticks = [layer, nothing].map(|part| {
             let part = black_box(part);
@@ -223,6 +225,15 @@ fn time_reference(stopwatch: &Stopwatch) {
         most = ticks[0].saturating_sub(ticks[1]).max(most);
     }
     report("reference_layer=", most);
+}
+
+/// Quick engagement in every seventh stretch of 700 steps.
+fn engagement(step: i32) -> Engagement {
+    match step % 4_900 {
+        0 => Engagement::Begins,
+        1..700 => Engagement::Held,
+        _ => Engagement::Off,
+    }
 }
 
 fn report(name: &str, ticks: u32) {
