@@ -19,7 +19,12 @@ fn main() {
     for function in [Function::Draft, Function::Mix, Function::DepthLimit] {
         println!(
             "{}",
-            Comparison::of(&hitch_model_file::dynamic(), function, &calibration, seeds)
+            Comparison::of(
+                &hitch_model_file::dynamic(),
+                function,
+                &calibration,
+                1..=seeds
+            )
         );
     }
 }

@@ -44,7 +44,7 @@ fn main() {
                     &hitch_model_file::dynamic(),
                     &ride,
                     &damping_with(|_| {}),
-                    seeds,
+                    1..=seeds,
                 );
                 println!("{tractor}, class {class}, {km_h} km/h: {found}");
             }
@@ -60,7 +60,7 @@ fn main() {
             &hitch_model_file::dynamic(),
             &ride,
             &damping_with(change),
-            seeds,
+            1..=seeds,
         );
         println!("4.5 t, class C, 20 km/h, {name}: {found}");
     }

@@ -31,7 +31,7 @@ fn damping_takes_a_quarter_off_the_pitch_and_a_fifth_off_the_pressure_peaks() {
             &hitch_model_file::dynamic(),
             &ride,
             &damping_with(|_| {}),
-            cases(3, 20) as u64,
+            1..=cases(3, 20) as u64,
         );
         println!("class C, {km_h} km/h: {found}");
         assert!(found.pitch_ratio() <= pitch_bar, "{found}");

@@ -208,3 +208,31 @@ fn a_calibration_that_became_worse_is_written_only_by_force() {
     assert!(forced.status.success(), "{}", text(&forced.stderr));
     assert!(folder.path().join("tuned.toml").exists());
 }
+
+/// The depth limit over an undulation is far from its requirement; what the search finds holds on a soil that it has not seen.
+#[test]
+fn tuning_a_function_of_the_field_helps_on_another_soil() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = "tune --scenario depth --trials 20 --out tuned.toml --report r.html --json -";
+    let output = run(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let depth = &document["figures"][1];
+    println!("{depth}");
+    let value = |key: &str| depth[key].as_f64().unwrap();
+    assert!(value("before") > value("limit"));
+    assert!(value("after") < 0.95 * value("before"));
+    let report = std::fs::read_to_string(folder.path().join("r.html")).unwrap();
+    assert_self_contained(&report);
+    // The first of the soils of the search is that of the loop.
+    let share = |more: &[&str]| {
+        let arguments = [&["loop", "--scenario", "depth", "--json", "-"], more].concat();
+        let output = run(folder.path(), &arguments);
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        document["field"][1]["value"].as_f64().unwrap()
+    };
+    assert!(share(&["--calibration", "tuned.toml"]) < share(&[]));
+    let loads = "tune --scenario depth --loads 100 --out other.toml";
+    let output = run(folder.path(), &loads.split(' ').collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(2));
+}

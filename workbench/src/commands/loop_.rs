@@ -308,7 +308,7 @@ impl Job<'_> {
             return Ok(());
         };
         let progress = Progress::start("driving in the field");
-        let run = scenario::drive(scenario, &model, base).map_err(Error::Usage)?;
+        let run = scenario::drive(scenario, &model, base, 1).map_err(Error::Usage)?;
         drop(progress);
         if let Some(path) = &self.args.report {
             let name = loop_scenario::typed(&scenario);

@@ -26,4 +26,6 @@ pub mod serve;
 pub mod simulate;
 pub mod summary;
 pub mod tune;
+mod tune_field;
+pub mod tune_result;
 pub mod tune_scenario;

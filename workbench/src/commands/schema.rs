@@ -5,7 +5,8 @@ use schemars::{JsonSchema, Schema};
 
 use crate::base_model::fit::ShownBaseFit;
 use crate::commands::fleet::Line;
-use crate::commands::{changes, effects, loop_, tune};
+use crate::commands::tune_result::Tuned;
+use crate::commands::{changes, effects, loop_};
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::explanation::{Diagnosis, Explanation};
@@ -25,7 +26,7 @@ const DOCUMENTS: [(&str, MakeSchema); 10] = [
     ("summary", schema::<FleetSummary>),
     ("model fit", schema::<ShownBaseFit>),
     ("loop", schema::<loop_::Driven<'static>>),
-    ("tune", schema::<tune::Tuned>),
+    ("tune", schema::<Tuned>),
     ("effects", schema::<effects::Catalogue>),
 ];
 

@@ -1,27 +1,22 @@
 //! `hitch tune`: tunes gains, ramps and limits for a plant.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use hitch_controller_host::calibration_file;
 use hitch_plant::Model;
 use hitch_quantities::Calibration;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use crate::closed_loop::{
-    self, LoopRun, Move, Press, PressRun, PressSummary, Scenario, Summary, run_presses,
-};
+use crate::closed_loop::{self, LoopRun, Move, Press, PressRun, Scenario, run_presses};
 use crate::commands::loop_::{changed, load_kg, read_files};
+use crate::commands::tune_field;
+use crate::commands::tune_result::{Figures, Found, Search, Tuned};
 use crate::commands::tune_scenario::TuneScenario;
 use crate::error::Error;
 use crate::output::progress::Progress;
 use crate::output::targets::Outputs;
 use crate::output::{self, JsonArg};
 use crate::report::tuning_page;
-use crate::text::Table;
-use crate::tuning::figures::{self, Figure};
-use crate::tuning::{Change, Judged, Trial};
+use crate::tuning::{Judged, Trial};
 use hitch_closed_loop::calibrate::calibrate;
 
 /// Arguments of `hitch tune`.
@@ -34,7 +29,10 @@ use hitch_closed_loop::calibrate::calibrate;
     or 0.12 A without one). With the scenarios tuning and rate it also varies the button's ramp and trim (rate.rate_slope, \
     trim_time, trim_limit), and drives presses of the external button. Each candidate drives moves in both directions at three loads and temperatures, on the \
     model and on two neighbours with thresholds shifted by 0.02 A, and with typical hysteresis, friction, air and \
-    cold oil where the model has none. Values given with --set are not changed. For manual tuning: hitch loop --set \
+    cold oil where the model has none. The scenarios draft, mix, slip, depth and transport tune the function \
+    instead (draft.work_filter, crossover, length, dead_band, step; slip.filter, slip_per_degree, crossover; ride.gain, low_corner, lead, forcing, \
+    dead_band, centring_time) for the requirements of hitch loop --scenario; the figures are those on soils that the search has not seen. \
+    Values given with --set are not changed. For manual tuning: hitch loop --set \
     position.approach_gain=30"
 )]
 pub struct Args {
@@ -69,48 +67,6 @@ pub struct Args {
     force: bool,
 }
 
-/// Result of `hitch tune`.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Tuned {
-    /// The values that the search changed.
-    changes: Vec<Change>,
-    /// Figures of the initial calibration.
-    before: Figures,
-    /// Figures of the tuned calibration.
-    after: Figures,
-    /// The figures that have names in the text, with their limits.
-    figures: Vec<Figure>,
-}
-
-/// Figures of a calibration on the plant and its neighbours.
-#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-struct Figures {
-    /// Cost, the objective of the search; a smaller one is better.
-    cost: f64,
-    /// Figures of all moves; absent without moves.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    summary: Option<Summary>,
-    /// Figures of all presses of the button; absent without presses.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    presses: Option<PressSummary>,
-}
-
-impl Tuned {
-    fn new(trial: &Trial, before: &Judged, after: &Judged) -> Self {
-        let figures = |judged: &Judged| Figures {
-            cost: judged.cost,
-            summary: judged.summary,
-            presses: judged.presses,
-        };
-        Self {
-            changes: trial.changes(&before.calibration, &after.calibration),
-            before: figures(before),
-            after: figures(after),
-            figures: before.compared(after),
-        }
-    }
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -135,36 +91,70 @@ pub fn run(args: &Args) -> Result<(), Error> {
         .iter()
         .filter_map(|setting| calibration_file::set(&mut (*base).clone(), setting).ok())
         .collect();
-    let progress = Progress::start("computing the ideal manoeuvres");
-    let moves = args.scenario.moves(&model, args.loads.as_deref());
-    let presses = args.scenario.presses(&model, &base, args.loads.as_deref());
-    let trial = Trial::new(&model, &moves, &presses);
-    let failed = || Error::Failed("the search found no valid calibration".to_owned());
-    let before = trial.judge(&base).ok_or_else(failed)?;
-    drop(progress);
-    let progress = Progress::of(args.trials as usize, "trying candidates");
-    let after = trial
-        .search(&base, &fixed, args.trials as usize, |count, cost| {
-            progress.reach(count, format!("best cost {cost:.3}"));
-            ControlFlow::Continue(())
-        })
-        .ok_or_else(failed)?;
-    drop(progress);
-    let is_worse = after.cost > before.cost;
+    let search = Search {
+        model: &model,
+        base: &base,
+        fixed: &fixed,
+        trials: args.trials as usize,
+    };
+    let found = match args.scenario {
+        TuneScenario::Field(_) if args.loads.is_some() => {
+            return Err(Error::Usage(
+                "scenarios of the field have their own loads: leave --loads out".to_owned(),
+            ));
+        }
+        TuneScenario::Field(scenario) => tune_field::tuned(&search, scenario)?,
+        _ => args.by_moves(&search)?,
+    };
+    let is_worse = found.tuned.is_worse();
     if !is_worse || args.force {
-        let text = calibration_file::write_tuned(&after.calibration, &base);
+        let text = calibration_file::write_tuned(&found.calibration, &base);
         output::write_file(&args.out, text.as_bytes())?;
     }
-    let tuned = Tuned::new(&trial, &before, &after);
     if let Some(path) = &args.report {
-        let page = report(&model, (&moves, &presses), &tuned, [&before, &after]);
-        output::write_file(path, page.as_bytes())?;
+        output::write_file(path, found.page.as_bytes())?;
     }
-    outputs.tell(&args.json, &tuned, || told(&tuned))?;
+    outputs.tell(&args.json, &found.tuned, || found.tuned.to_string())?;
     if is_worse && !args.force {
-        Err(worse(args, &before, &after))
+        Err(worse(args, &found.tuned))
     } else {
         Ok(())
+    }
+}
+
+impl Args {
+    /// Tunes with moves of the lever and presses of the button.
+    fn by_moves(&self, search: &Search<'_>) -> Result<Found, Error> {
+        let (model, base) = (search.model, search.base);
+        let progress = Progress::start("computing the ideal manoeuvres");
+        let moves = self.scenario.moves(model, self.loads.as_deref());
+        let presses = self.scenario.presses(model, base, self.loads.as_deref());
+        let trial = Trial::new(model, &moves, &presses);
+        let before = trial.judge(base).ok_or_else(Search::nothing)?;
+        drop(progress);
+        let after = search
+            .told(|tell| trial.search(base, search.fixed, search.trials, tell))
+            .ok_or_else(Search::nothing)?;
+        let figures = |judged: &Judged| Figures {
+            cost: judged.cost,
+            summary: judged.summary,
+            presses: judged.presses,
+        };
+        let tuned = Tuned {
+            changes: trial.changes(&before.calibration, &after.calibration),
+            before: figures(&before),
+            after: figures(&after),
+            figures: before.compared(&after),
+        };
+        let page = match &self.report {
+            Some(_) => report(model, (&moves, &presses), &tuned, [&before, &after]),
+            None => String::new(),
+        };
+        Ok(Found {
+            calibration: after.calibration,
+            tuned,
+            page,
+        })
     }
 }
 
@@ -196,30 +186,13 @@ fn both<T>(pair: &[Option<T>; 2]) -> Option<[&T; 2]> {
 }
 
 /// The search starts with the hysteresis of a real valve, which can cost more than the initial calibration.
-fn worse(args: &Args, before: &Judged, after: &Judged) -> Error {
+fn worse(args: &Args, tuned: &Tuned) -> Error {
     Error::Failed(format!(
-        "the best calibration found is worse than the initial one (cost {:.3} after {:.3}; the search keeps the hysteresis \
-         of a real valve): {} is not written; try more --trials, keep the initial one, or write it with --force",
-        after.cost,
-        before.cost,
+        "the best calibration found is worse than the initial one (cost {:.3} after {:.3}; a search of moves keeps the \
+         hysteresis of a real valve, and one of the field is judged on other soils): {} is not written; try more --trials, \
+         keep the initial one, or write it with --force",
+        tuned.after.cost,
+        tuned.before.cost,
         args.out.display()
     ))
-}
-
-/// Values and figures before and after.
-fn told(tuned: &Tuned) -> String {
-    let mut values = Table::new(["value", "before", "after"]);
-    for change in &tuned.changes {
-        values.row([
-            change.key.clone(),
-            format!("{:.3}", change.before),
-            format!("{:.3}", change.after),
-        ]);
-    }
-    let mut table = Table::new(Figure::HEADINGS);
-    for figure in &tuned.figures {
-        table.row(figure.cells());
-    }
-    let said = figures::sentence(&tuned.figures).unwrap_or_default();
-    format!("{values}\n{table}\n{said}\n")
 }

@@ -9,6 +9,7 @@ use hitch_quantities::ValidCalibration;
 
 use crate::closed_loop::{self, Move, OIL_TEMPERATURE_C, Press, Scenario};
 use crate::commands::loop_scenario::{LoopScenario, typed};
+use crate::field_loop::scenario::FieldScenario;
 
 /// What is driven for tuning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub enum TuneScenario {
     Moves(Scenario),
     /// The external button.
     Rate,
+    /// A function in the field.
+    Field(FieldScenario),
 }
 
 impl TuneScenario {
@@ -24,7 +27,7 @@ impl TuneScenario {
     pub fn moves(self, model: &Model, loads_kg: Option<&[f64]>) -> Vec<Move> {
         match self {
             Self::Moves(scenario) => scenario.moves(model, loads_kg),
-            Self::Rate => Vec::new(),
+            Self::Rate | Self::Field(_) => Vec::new(),
         }
     }
 
@@ -39,7 +42,7 @@ impl TuneScenario {
             Self::Rate | Self::Moves(Scenario::Tuning) => {
                 closed_loop::presses(model, calibration, loads_kg, &[OIL_TEMPERATURE_C])
             }
-            Self::Moves(_) => Vec::new(),
+            Self::Moves(_) | Self::Field(_) => Vec::new(),
         }
     }
 }
@@ -54,6 +57,11 @@ impl ValueEnum for TuneScenario {
             Self::Moves(Scenario::Tuning),
             Self::Moves(Scenario::Limits),
             Self::Rate,
+            Self::Field(FieldScenario::Draft),
+            Self::Field(FieldScenario::Mix),
+            Self::Field(FieldScenario::Slip),
+            Self::Field(FieldScenario::Depth),
+            Self::Field(FieldScenario::Transport),
         ]
     }
 
@@ -64,6 +72,7 @@ impl ValueEnum for TuneScenario {
             )),
             Self::Moves(scenario) => LoopScenario::Moves(*scenario).to_possible_value(),
             Self::Rate => LoopScenario::Rate.to_possible_value(),
+            Self::Field(scenario) => LoopScenario::Field(*scenario).to_possible_value(),
         }
     }
 }

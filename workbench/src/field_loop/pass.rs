@@ -1,6 +1,7 @@
 //! A pass over a field: the tractor drives off with a raised implement, lowers it, and works.
 
 use std::fmt::{self, Display, Formatter};
+use std::ops::RangeInclusive;
 
 use hitch_field::draft::Texture;
 use hitch_field::soil::SoilPlan;
@@ -92,7 +93,7 @@ impl Pass {
 /// Draft at 25 cm in loam, N: set point of the passes.
 pub const DRAFT_N: f64 = 18_200.0;
 
-/// A function against position control in varying loam: means over seeds from 1 on, a minute of work each.
+/// A function against position control in varying loam: means over seeds, a minute of work each.
 #[derive(Debug, Clone, Copy)]
 pub struct Comparison {
     /// The function; mix at 0.5.
@@ -114,7 +115,7 @@ impl Comparison {
         model: &Model,
         function: Function,
         calibration: &ValidCalibration,
-        seeds: u64,
+        seeds: RangeInclusive<u64>,
     ) -> Self {
         let figures = |function, seed| {
             let pass = Pass {
@@ -131,7 +132,7 @@ impl Comparison {
             };
             Figures::of(&pass.drive(model, calibration, |_, _| {}))
         };
-        let pairs: Vec<[Figures; 2]> = (1..=seeds)
+        let pairs: Vec<[Figures; 2]> = seeds
             .into_par_iter()
             .map(|seed| [Function::Position, function].map(|function| figures(function, seed)))
             .collect();

@@ -1,5 +1,7 @@
 //! Scenarios of the field: what each function does on the soil, the road or the headland that it is meant for.
 
+use std::ops::RangeInclusive;
+
 use clap::ValueEnum;
 use hitch_field::body::BodyConstants;
 use hitch_field::draft::Texture;
@@ -19,7 +21,7 @@ use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings, TOUCH_DEG};
 use super::transport::{Ride, RideComparison, class_c};
 use hitch_closed_loop::Sample;
 
-/// Seeds of soil and noise over which figures are means.
+/// Number of seeds of soil and noise over which figures are means.
 const SEEDS: u64 = 4;
 /// Deepest links that a scenario asks for, m.
 const DEEPEST_M: f64 = 0.30;
@@ -92,7 +94,8 @@ impl FieldRun {
     }
 }
 
-/// Drives a scenario. What the calibration leaves off is switched on with its other values.
+/// Drives a scenario on soils and noise of seeds from a first one on. What the calibration leaves off is switched on with its other
+/// values.
 ///
 /// # Errors
 /// If the model cannot lower its links to the depths of the scenarios.
@@ -100,6 +103,7 @@ pub fn drive(
     scenario: FieldScenario,
     model: &Model,
     calibration: &ValidCalibration,
+    first_seed: u64,
 ) -> Result<FieldRun, String> {
     let coupling = Coupling::new(model, TOUCH_DEG, 0.0);
     if !coupling.reaches(DEEPEST_M) || !coupling.reaches(coupling.depth_m(RAISED_DEG)) {
@@ -111,12 +115,12 @@ pub fn drive(
     }
     let calibration = &fitted(calibration)?;
     Ok(match scenario {
-        FieldScenario::Draft => draft(model, calibration),
-        FieldScenario::Mix => mix(model, calibration),
-        FieldScenario::Slip => slip(model, calibration),
-        FieldScenario::Depth => depth(model, calibration),
-        FieldScenario::Transport => transport(model, calibration),
-        FieldScenario::Headland => headland(model, calibration),
+        FieldScenario::Draft => draft(model, calibration, first_seed),
+        FieldScenario::Mix => mix(model, calibration, first_seed),
+        FieldScenario::Slip => slip(model, calibration, first_seed),
+        FieldScenario::Depth => depth(model, calibration, first_seed),
+        FieldScenario::Transport => transport(model, calibration, first_seed),
+        FieldScenario::Headland => headland(model, calibration, first_seed),
     })
 }
 
@@ -141,14 +145,18 @@ fn settings(function: Function) -> Settings {
     }
 }
 
-fn pass(soil: SoilPlan, settings: Settings, work_s: f64) -> Pass {
+fn pass(soil: SoilPlan, settings: Settings, work_s: f64, seed: u64) -> Pass {
     Pass {
         soil,
         settings,
         link_depth_m: LINK_DEPTH_M,
         work_s,
-        seed: 1,
+        seed,
     }
+}
+
+fn seeds(first: u64) -> RangeInclusive<u64> {
+    first..=first + SEEDS - 1
 }
 
 /// Figures of a function in varying loam, and a course of it.
@@ -156,9 +164,10 @@ fn compared(
     model: &Model,
     calibration: &ValidCalibration,
     function: Function,
+    first_seed: u64,
     [most_draft, most_depth]: [Option<f64>; 2],
 ) -> FieldRun {
-    let found = Comparison::of(model, function, calibration, SEEDS);
+    let found = Comparison::of(model, function, calibration, seeds(first_seed));
     let figures = vec![
         FieldFigure::new(
             "deviation of the draft over that of position control",
@@ -186,21 +195,28 @@ fn compared(
         ),
     ];
     let varying = SoilPlan::varying(Texture::Medium);
-    let course = pass(varying, settings(function), 30.0).drive(model, calibration, |_, _| {});
+    let course =
+        pass(varying, settings(function), 30.0, first_seed).drive(model, calibration, |_, _| {});
     FieldRun::of(figures, &course)
 }
 
-fn draft(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+fn draft(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> FieldRun {
     /// Set point that suits the coarse soil and the fine one, N.
     const SET_N: f64 = 11_900.0;
-    let mut run = compared(model, calibration, Function::Draft, [Some(0.5), None]);
+    let mut run = compared(
+        model,
+        calibration,
+        Function::Draft,
+        first_seed,
+        [Some(0.5), None],
+    );
     let mut soil = SoilPlan::uniform(Texture::Coarse);
     soil.texture_changes = vec![(60.0, Texture::Fine)];
     let settings = Settings {
         draft_n: Some(SET_N),
         ..settings(Function::Draft)
     };
-    let samples = pass(soil, settings, 25.0).drive(model, calibration, |_, _| {});
+    let samples = pass(soil, settings, 25.0, first_seed).drive(model, calibration, |_, _| {});
     let off: Vec<f64> = samples
         .iter()
         .map(|sample| sample.field.draft_n / SET_N - 1.0)
@@ -225,11 +241,17 @@ fn draft(model: &Model, calibration: &ValidCalibration) -> FieldRun {
     run
 }
 
-fn mix(model: &Model, calibration: &ValidCalibration) -> FieldRun {
-    compared(model, calibration, Function::Mix, [Some(0.7), Some(6.0)])
+fn mix(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> FieldRun {
+    compared(
+        model,
+        calibration,
+        Function::Mix,
+        first_seed,
+        [Some(0.7), Some(6.0)],
+    )
 }
 
-fn slip(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+fn slip(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> FieldRun {
     const LIMIT: f64 = 0.2;
     const PATCH_M: [f64; 2] = [60.0, 80.0];
     let mut soil = SoilPlan::uniform(Texture::Medium);
@@ -238,7 +260,7 @@ fn slip(model: &Model, calibration: &ValidCalibration) -> FieldRun {
         slip_limit: Some(LIMIT),
         ..settings(Function::Draft)
     };
-    let samples = pass(soil, settings, 30.0).drive(model, calibration, |_, _| {});
+    let samples = pass(soil, settings, 30.0, first_seed).drive(model, calibration, |_, _| {});
     let until = |at_m: f64| {
         let before = |sample: &&FieldSample| sample.field.distance_m < at_m;
         samples.iter().take_while(before).count()
@@ -276,11 +298,11 @@ fn driven(
     calibration: &ValidCalibration,
     (soil, terrain): (SoilPlan, Terrain),
     (settings, speed_m_s): (Settings, f64),
-    time_s: f64,
+    (time_s, seed): (f64, u64),
     lever_deg: impl Fn(&Coupling<'_>, &[FieldSample]) -> f64,
 ) -> Vec<FieldSample> {
     let field = (TractorConstants::ploughing(), soil);
-    let mut rig = FieldRig::new(model, calibration, field, terrain, 1);
+    let mut rig = FieldRig::new(model, calibration, field, terrain, seed);
     let mut samples = Vec::new();
     for _ in 0..(time_s * 1e3) as usize {
         let lever_deg = lever_deg(rig.coupling(), &samples);
@@ -289,7 +311,7 @@ fn driven(
     samples
 }
 
-fn depth(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+fn depth(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> FieldRun {
     const SPEED: f64 = 2.7;
     const WORKS_FROM: usize = 25_000;
     let terrain = Terrain::flat().with_undulation(Undulation {
@@ -301,7 +323,7 @@ fn depth(model: &Model, calibration: &ValidCalibration) -> FieldRun {
         calibration,
         (SoilPlan::varying(Texture::Medium), terrain),
         (settings(Function::DepthLimit), SPEED),
-        85.0,
+        (85.0, first_seed),
         |coupling, samples| match samples.len() {
             ..10_000 => RAISED_DEG,
             _ => coupling.angle_deg(LINK_DEPTH_M),
@@ -337,7 +359,7 @@ fn depth(model: &Model, calibration: &ValidCalibration) -> FieldRun {
     FieldRun::of(figures, &work[..work.len().min(30_000)])
 }
 
-fn headland(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+fn headland(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> FieldRun {
     const HEADLAND_M: [f64; 2] = [60.0, 76.0];
     let mut soil = SoilPlan::varying(Texture::Medium);
     soil.stretches = vec![Stretch::headland(
@@ -351,7 +373,7 @@ fn headland(model: &Model, calibration: &ValidCalibration) -> FieldRun {
         calibration,
         (soil, Terrain::flat()),
         (settings(Function::Draft), SPEED_M_S),
-        65.0,
+        (65.0, first_seed),
         |coupling, samples| match samples.last() {
             Some(last) if samples.len() >= 10_000 && !is_headland(last) => {
                 coupling.angle_deg(LINK_DEPTH_M)
@@ -406,7 +428,7 @@ fn headland(model: &Model, calibration: &ValidCalibration) -> FieldRun {
     FieldRun::of(figures, &samples[reached.saturating_sub(5_000)..])
 }
 
-fn transport(model: &Model, calibration: &ValidCalibration) -> FieldRun {
+fn transport(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> FieldRun {
     let ride = |km_h: f64| Ride {
         body: BodyConstants::ploughing(),
         roughness: class_c(),
@@ -414,7 +436,7 @@ fn transport(model: &Model, calibration: &ValidCalibration) -> FieldRun {
     };
     let mut figures = Vec::new();
     for km_h in [12.0, 20.0] {
-        let found = RideComparison::of(model, &ride(km_h), calibration, SEEDS);
+        let found = RideComparison::of(model, &ride(km_h), calibration, seeds(first_seed));
         let damped = &found.damped;
         let name = |what: &str| format!("{km_h:.0} km/h: {what}");
         figures.extend([
@@ -452,7 +474,7 @@ fn transport(model: &Model, calibration: &ValidCalibration) -> FieldRun {
     }
     FieldRun {
         figures,
-        hitch: ride(20.0).course(model, calibration, 1),
+        hitch: ride(20.0).course(model, calibration, first_seed),
         field: Vec::new(),
     }
 }

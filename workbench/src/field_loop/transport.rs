@@ -22,6 +22,7 @@ use rayon::prelude::*;
 
 use super::rig::RAISED_DEG;
 use std::fmt::{self, Display, Formatter};
+use std::ops::RangeInclusive;
 
 /// Mass of the implement, kg.
 pub const IMPLEMENT_KG: f64 = 600.0;
@@ -280,7 +281,7 @@ impl Ride {
     }
 }
 
-/// A ride with damping against the same ride with a hitch that holds: means over seeds from 1 on.
+/// A ride with damping against the same ride with a hitch that holds: means over seeds.
 #[derive(Debug, Clone, Copy)]
 pub struct RideComparison {
     /// With a hitch that holds.
@@ -292,10 +293,16 @@ pub struct RideComparison {
 impl RideComparison {
     /// Drives all rides.
     #[must_use]
-    pub fn of(model: &Model, ride: &Ride, calibration: &ValidCalibration, seeds: u64) -> Self {
+    pub fn of(
+        model: &Model,
+        ride: &Ride,
+        calibration: &ValidCalibration,
+        seeds: RangeInclusive<u64>,
+    ) -> Self {
         let held = ValidCalibration::nominal();
         let [held, damped] = [&held, calibration].map(|calibration| {
-            let figures: Vec<RideFigures> = (1..=seeds)
+            let figures: Vec<RideFigures> = seeds
+                .clone()
                 .into_par_iter()
                 .map(|seed| ride.drive(model, calibration, seed))
                 .collect();

@@ -10,7 +10,7 @@ use crate::text::known;
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Figure {
     /// Name, with its unit.
-    pub name: &'static str,
+    pub name: String,
     /// The largest value that is wanted; `null` without one.
     pub limit: Option<f64>,
     /// Value of the initial calibration.
@@ -25,9 +25,11 @@ impl Figure {
     /// Column headings of [`Figure::cells`].
     pub const HEADINGS: [&'static str; 5] = ["figure", "limit", "before", "after", ""];
 
-    fn new(name: &'static str, limit: Option<f64>, before: f64, after: f64) -> Self {
+    /// A figure; `limit` is the largest value that is wanted.
+    #[must_use]
+    pub fn new(name: impl Into<String>, limit: Option<f64>, before: f64, after: f64) -> Self {
         Self {
-            name,
+            name: name.into(),
             limit,
             before,
             after,
@@ -49,7 +51,7 @@ impl Figure {
     #[must_use]
     pub fn cells(&self) -> [String; 5] {
         [
-            self.name.to_owned(),
+            self.name.clone(),
             self.limit
                 .map_or_else(String::new, |limit| format!("{limit:.2}")),
             known(self.before, 3),
@@ -78,7 +80,7 @@ pub fn compared(
 pub fn sentence(figures: &[Figure]) -> Option<String> {
     let limited: Vec<&Figure> = figures.iter().filter(|one| one.met.is_some()).collect();
     let missed = limited.iter().filter(|one| one.met == Some(false));
-    let missed: Vec<&str> = missed.map(|one| one.name).collect();
+    let missed: Vec<&str> = missed.map(|one| one.name.as_str()).collect();
     match (limited.len(), missed.is_empty()) {
         (0, _) => None,
         (_, true) => Some("All limits are met.".to_owned()),
@@ -91,7 +93,7 @@ pub fn sentence(figures: &[Figure]) -> Option<String> {
 }
 
 fn of_moves([before, after]: [&Summary; 2]) -> [Figure; 6] {
-    let of = |name, limit: f64, value: fn(&Summary) -> f64| {
+    let of = |name: &str, limit: f64, value: fn(&Summary) -> f64| {
         Figure::new(name, Some(limit), value(before), value(after))
     };
     [
@@ -107,7 +109,7 @@ fn of_moves([before, after]: [&Summary; 2]) -> [Figure; 6] {
 }
 
 fn of_presses([before, after]: [&PressSummary; 2]) -> [Figure; 4] {
-    let of = |name, limit: Option<f64>, value: fn(&PressSummary) -> f64| {
+    let of = |name: &str, limit: Option<f64>, value: fn(&PressSummary) -> f64| {
         Figure::new(name, limit, value(before), value(after))
     };
     [

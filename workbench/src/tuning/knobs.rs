@@ -58,23 +58,20 @@ pub struct Least {
     pub value: f64,
 }
 
-/// `base` with each value multiplied by two to the power of its coordinate, limited below by `least`; `None` if the
+/// `base` with each value multiplied by two to the power of its coordinate, limited below by `least` if there is one; `None` if the
 /// result is not a valid calibration.
 pub fn with_values(
     base: &Calibration,
     knobs: &[&str],
-    least: Least,
+    least: Option<Least>,
     point: &[f64],
 ) -> Option<ValidCalibration> {
     let mut calibration = base.clone();
     for (key, doublings) in knobs.iter().zip(point) {
         let found = scalar(base, key)?;
         let factor = doublings.clamp(-MOST_DOUBLINGS, MOST_DOUBLINGS).exp2();
-        let low = if *key == least.knob {
-            least.value.clamp(found.low, found.high)
-        } else {
-            found.low
-        };
+        let bound = least.filter(|least| *key == least.knob);
+        let low = bound.map_or(found.low, |least| least.value.clamp(found.low, found.high));
         let value = (found.value * factor).clamp(low, found.high);
         set(&mut calibration, &format!("{key}={value}")).ok()?;
     }
@@ -126,7 +123,7 @@ mod tests {
         };
         let turned = |doublings: f64| {
             let knobs = ["hydraulics.hysteresis", "hydraulics.pressure_filter"];
-            with_values(&base, &knobs, least, &[doublings, doublings]).unwrap()
+            with_values(&base, &knobs, Some(least), &[doublings, doublings]).unwrap()
         };
         assert_eq!(turned(-2.0).hydraulics.hysteresis.0, 120);
         assert_eq!(turned(-2.0).hydraulics.pressure_filter.0, 60);

@@ -6,18 +6,20 @@
 
 mod change;
 mod cost;
+mod field;
 pub mod figures;
 mod knobs;
+mod search;
 
 use std::ops::ControlFlow;
 
-use cmaes::{CMAESOptions, DVector};
 use hitch_effects::find;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::{Calibration, ValidCalibration};
 
 use figures::Figure;
 use knobs::{Least, tuned_by, with_values, without};
+use search::{Costly, search};
 
 use crate::closed_loop::{
     self, Course, Move, MoveResult, Press, PressResult, PressSummary, Summary, courses, run_presses,
@@ -25,6 +27,7 @@ use crate::closed_loop::{
 
 pub use change::Change;
 pub use cost::{cost, press_cost};
+pub use field::{FieldJudged, FieldTrial};
 pub use knobs::KNOBS;
 
 /// Residual error of a threshold after teaching, A.
@@ -42,8 +45,6 @@ const USUAL: [(&str, &[f64]); 4] = [
 ];
 /// Time for which a candidate is observed after a move, s; it covers all corrections that follow directly.
 const AFTER_S: f64 = 1.5;
-/// Initial standard deviation in octaves of each value: 0.3 is about 20 %.
-const START_SIGMA: f64 = 0.3;
 
 /// Plants with the moves and presses that are driven on them.
 pub struct Trial {
@@ -67,6 +68,12 @@ pub struct Judged {
     pub presses: Option<PressSummary>,
     /// Cost, the objective of the search.
     pub cost: f64,
+}
+
+impl Costly for Judged {
+    fn cost(&self) -> f64 {
+        self.cost
+    }
 }
 
 impl Judged {
@@ -151,37 +158,10 @@ impl Trial {
         tell: impl Fn(usize, f64) -> ControlFlow<()> + Sync,
     ) -> Option<Judged> {
         let knobs = without(&self.knobs, fixed);
-        let state = std::sync::Mutex::new((0, None::<Judged>, false));
-        // The method always completes a generation.
-        let is_over = || state.lock().is_ok_and(|state| state.0 >= trials || state.2);
-        let objective = |point: &DVector<f64>| {
-            if is_over() {
-                return f64::MAX;
-            }
-            let judged = with_values(base, &knobs, self.least, point.as_slice())
-                .and_then(|calibration| self.judge(&calibration));
-            let cost = judged.as_ref().map_or(f64::MAX, |judged| judged.cost);
-            // No code panics while it holds the lock.
-            if let Ok(mut state) = state.lock() {
-                state.0 += 1;
-                if state.1.as_ref().is_none_or(|best| cost < best.cost) {
-                    state.1 = judged;
-                }
-                let best = state.1.as_ref().map_or(f64::MAX, |best| best.cost);
-                state.2 = tell(state.0, best).is_break();
-            }
-            cost
-        };
-        // The start is a candidate too, with typical hysteresis: the result is never worse.
-        objective(&DVector::zeros(knobs.len()));
-        let mut search = CMAESOptions::new(vec![0.0; knobs.len()], START_SIGMA)
-            .max_function_evals(trials)
-            .seed(1)
-            .build(objective)
-            .ok()?;
-        search.run();
-        drop(search);
-        state.into_inner().ok()?.1
+        let turned = |point: &[f64]| with_values(base, &knobs, Some(self.least), point);
+        search(knobs.len(), trials, tell, |point| {
+            self.judge(&turned(point)?)
+        })
     }
 
     /// The values that are tuned, before and after.

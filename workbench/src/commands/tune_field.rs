@@ -1,0 +1,52 @@
+//! `hitch tune` with a scenario of the field.
+
+use hitch_closed_loop::driven::MachineError;
+use hitch_closed_loop::with_dynamics;
+
+use super::tune_result::{Figures, Found, Search, Tuned};
+use crate::error::Error;
+use crate::field_loop::scenario::FieldScenario;
+use crate::output::progress::Progress;
+use crate::report::tuning_page;
+use crate::tuning::FieldTrial;
+
+/// Tunes a function for its scenario. Figures and costs are those on soils that the search has not seen.
+///
+/// # Errors
+/// If the scenario has no requirements, or the model cannot drive it.
+pub fn tuned(search: &Search<'_>, scenario: FieldScenario) -> Result<Found, Error> {
+    let model = with_dynamics(search.model).map_err(MachineError::from)?;
+    let trial = FieldTrial::new(&model, scenario).ok_or_else(|| {
+        Error::Usage(
+            "the scenario has no requirements to tune for; take draft, mix, slip, depth or transport"
+                .to_owned(),
+        )
+    })?;
+    let progress = Progress::start("driving in the field");
+    let before = trial.judge_unseen(search.base).map_err(Error::Usage)?;
+    drop(progress);
+    let best = search
+        .told(|tell| trial.search(search.base, search.fixed, search.trials, tell))
+        .ok_or_else(Search::nothing)?;
+    let after = trial
+        .judge_unseen(&best.calibration)
+        .map_err(Error::Usage)?;
+    let tuned = Tuned {
+        changes: trial.changes(search.base, &best.calibration),
+        before: Figures::of_cost(before.cost),
+        after: Figures::of_cost(after.cost),
+        figures: before.compared(&after),
+    };
+    let page = tuning_page::page(&tuning_page::Shown {
+        model: &model,
+        changes: &tuned.changes,
+        figures: &tuned.figures,
+        moves: None,
+        presses: None,
+    });
+    Ok(Found {
+        calibration: best.calibration,
+        tuned,
+        page,
+    })
+}
