@@ -9,41 +9,13 @@ use crate::hooks::elements::{FlowFactor, Line, ReliefOverride};
 use crate::hooks::place::Place;
 use crate::hooks::signals::Signals;
 use crate::model::Model;
+use crate::solver::flows::Flows;
 use crate::solver::moment::Moment;
 use crate::solver::openings::{Opening, Openings};
 use crate::state::MechanicalState;
 
 /// Pressure deviation below which a lagging compensator, and a hose's creeping wall, is at rest, Pa.
 pub const AT_REST_PA: f64 = 10.0;
-
-/// Flows and pump pressure of the circuit.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Flows {
-    /// Through the lift valve into the cylinder, m3/s.
-    pub lift_m3_s: f64,
-    /// Through the lowering valve to tank, m3/s.
-    pub lower_m3_s: f64,
-    /// Out of the cylinder past the valves, m3/s.
-    pub leakage_m3_s: f64,
-    /// Pump pressure, Pa.
-    pub pump_pressure_pa: f64,
-}
-
-impl Flows {
-    /// Flow at the flow meter in the cylinder line, m3/s, positive into the cylinder.
-    #[inline(always)]
-    #[must_use]
-    pub fn metered_m3_s(&self) -> f64 {
-        self.lift_m3_s - self.lower_m3_s
-    }
-
-    /// Net flow into the cylinder, m3/s.
-    #[inline(always)]
-    #[must_use]
-    pub fn net_m3_s(&self) -> f64 {
-        self.metered_m3_s() - self.leakage_m3_s
-    }
-}
 
 /// The circuit between pump, tank and cylinder port.
 pub struct Circuit<'a, const KINDS: u8> {

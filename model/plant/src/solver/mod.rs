@@ -2,6 +2,7 @@
 
 pub mod circuit;
 pub mod dynamic;
+pub mod flows;
 pub mod forces;
 pub mod moment;
 pub mod openings;

@@ -8,8 +8,9 @@
 
 use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
-use crate::solver::circuit::{Circuit, Flows};
+use crate::solver::circuit::Circuit;
 use crate::solver::dynamic::Steps;
+use crate::solver::flows::Flows;
 use crate::solver::forces::Forces;
 use crate::solver::openings::Openings;
 use crate::state::MechanicalState;
