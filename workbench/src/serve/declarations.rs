@@ -7,7 +7,7 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value};
 
-use super::first::Sheet;
+use super::first::{CheckedConstants, Sheet};
 use super::live::answer::LoopAnswer;
 use super::own_term::FormulaElements;
 use super::routes::Checked;
@@ -78,6 +78,7 @@ fn views(generator: &mut SchemaGenerator) {
     root::<ModelMap>(generator);
     root::<Surveyed>(generator);
     root::<Sheet>(generator);
+    root::<CheckedConstants>(generator);
     root::<FormulaElements>(generator);
     root::<Checked>(generator);
     root::<Described>(generator);

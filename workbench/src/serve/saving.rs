@@ -92,12 +92,11 @@ fn calibration_text(session: &Session) -> Result<String, Error> {
 
 /// The report of the explanation; without one, of the present model against the campaign.
 fn page(session: &Shared) -> String {
-    let (explained, evaluated, model, first) = {
+    let (explained, evaluated, first) = {
         let session = lock(session);
         (
             session.present_explanation().cloned(),
             Arc::clone(&session.present().evaluated),
-            session.model(),
             Arc::clone(session.subject()),
         )
     };
@@ -111,6 +110,7 @@ fn page(session: &Shared) -> String {
         shown: explained.shown.clone(),
     };
     let experiment = first.experiment().clone();
+    let model = explained.model.clone();
     explanation_page::page(&Found::finished(experiment, model, found))
 }
 

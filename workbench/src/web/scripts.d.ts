@@ -65,6 +65,7 @@ interface Answers {
   formulas: FormulaElements;
   check: Checked;
   "first/sheet": Sheet;
+  "first/known": CheckedConstants;
   "upload/survey": Surveyed;
 }
 

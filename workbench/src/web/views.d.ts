@@ -79,6 +79,12 @@ interface Checked {
   fault: Fault | null;
 }
 
+/** The answer about what is known of constants. */
+interface CheckedConstants {
+  /** What is wrong with it. */
+  faults: ConstantFault[];
+}
+
 /** The connection to an ECU on the bus. */
 interface Connection {
   /** Whether the adapter is connected. */
@@ -91,11 +97,19 @@ interface Connection {
   position_percent: number | null;
 }
 
-/** The constants of the first model. */
+/** What is wrong with what is known of a constant. */
+interface ConstantFault {
+  /** Name of the constant. */
+  name: string;
+  /** What is wrong, and how to mend it. */
+  what: string;
+}
+
+/** The constants of a session. */
 interface Constants {
-  /** Names of those that a fit can hold. */
-  names: string[];
-  /** The fit. */
+  /** Those that a fit moves. */
+  movable: MovableConstant[];
+  /** The fit of the first model's. */
   fitted: FittedConstants | null;
 }
 
@@ -411,6 +425,16 @@ interface ModelMap {
   channels: MeasuredChannel[];
   /** The cells. */
   cells: LocatedCell[];
+}
+
+/** A constant that a fit moves. */
+interface MovableConstant {
+  /** Its name in a model file. */
+  name: string;
+  /** Its declared value with the unit, of currents the threshold; of a curve, that it is one. */
+  declared: string;
+  /** Its usual tolerance, as a user gives one. */
+  usual: string;
 }
 
 /** Figures of a move. */
@@ -807,7 +831,7 @@ interface State {
   earlier_model: string | null;
   /** The steps from data to a saved calibration. */
   way: WayStep[];
-  /** Constants of the first model. */
+  /** Constants that a fit moves, and their fit. */
   constants: Constants;
   /** The tuned calibration of the present model. */
   tuned: TunedCalibration | null;
