@@ -138,10 +138,12 @@ def main() -> None:
                 calibration(page, pictures, view)
             for tab in ("model", "controller"):
                 page.click(f"#tab-{tab}")
-                closed = page.locator(f"#{tab} > details:not([open]) > summary")
+                closed = page.locator(f"#{tab} details:not([open]) > summary")
                 while closed.count():
                     closed.first.click()
                 page.screenshot(path=pictures / f"way_{tab}_{view}.png")
+                if tab == "model":
+                    page.locator("#known").screenshot(path=pictures / f"way_known_list_{view}.png")
                 assert_fits(page)
                 assert_accessible(page)
         # A refused request is a message of the console.

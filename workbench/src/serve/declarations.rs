@@ -13,6 +13,7 @@ use super::own_term::FormulaElements;
 use super::routes::Checked;
 use super::upload::surveyed::Surveyed;
 use super::views::message::Message;
+use super::views::next_experiment::ExpectedRuns;
 use super::views::run::RunView;
 use super::views::state::Begun;
 use super::views::trial::{RunParts, Signature, TriedRuns};
@@ -79,6 +80,7 @@ fn views(generator: &mut SchemaGenerator) {
     root::<Surveyed>(generator);
     root::<Sheet>(generator);
     root::<CheckedConstants>(generator);
+    root::<ExpectedRuns>(generator);
     root::<FormulaElements>(generator);
     root::<Checked>(generator);
     root::<Described>(generator);

@@ -62,7 +62,7 @@ async fn all(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, R
 }
 
 /// An answer that a browser saves as a file.
-fn attached(kind: &'static str, name: &str, content: impl IntoResponse) -> Response {
+pub(super) fn attached(kind: &'static str, name: &str, content: impl IntoResponse) -> Response {
     let headers = [
         (header::CONTENT_TYPE, kind.to_owned()),
         (

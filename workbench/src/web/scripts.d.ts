@@ -66,6 +66,7 @@ interface Answers {
   check: Checked;
   "first/sheet": Sheet;
   "first/known": CheckedConstants;
+  "next/expected": ExpectedRuns;
   "upload/survey": Surveyed;
 }
 

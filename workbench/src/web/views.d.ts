@@ -195,6 +195,32 @@ interface EffectTexts {
   parameters: ParameterMeaning[];
 }
 
+/** A run to log. */
+interface ExpectedRun {
+  /** Its load, start, oil temperature and duration. */
+  conditions: string;
+  /** Its currents, and each channel as every model expects it. */
+  plot: RowPlot;
+}
+
+/** What models expect of the runs of a proposed experiment. */
+interface ExpectedRuns {
+  /** The models, in the order of their lines. */
+  models: ExpectingModel[];
+  /** What the lines decide; `null` for a single model. */
+  decides: string | null;
+  /** The runs. */
+  runs: ExpectedRun[];
+}
+
+/** A model that expects something of the runs. */
+interface ExpectingModel {
+  /** Name of its lines. */
+  name: string;
+  /** Title of the effect that it has, or that it is the present model. */
+  title: string;
+}
+
 /** A step of an explanation; errors in sigma. */
 interface ExplainedStep {
   /** Texts of its effect. */
@@ -528,6 +554,14 @@ interface ProposedColumn {
   unit: string | null;
 }
 
+/** A proposed experiment. */
+interface ProposedExperiment {
+  /** Manoeuvre and purpose, as a sentence without a full stop. */
+  sentence: string;
+  /** Whether there are runs to log. */
+  has_runs: boolean;
+}
+
 /** Logs with equal columns. */
 interface ProposedGroup {
   /** Their files. */
@@ -726,7 +760,7 @@ interface ShownExplanation {
   /** Ids of effects that are not detectable in the campaign. */
   not_visible: string[];
   /** The most informative next experiment, if one is needed. */
-  next_experiment: string | null;
+  next: ProposedExperiment | null;
 }
 
 /** A parameter with the range of its slider; values in its unit. */
@@ -758,7 +792,7 @@ interface ShownRanking {
   /** The candidates, best first. */
   candidates: ShownCandidate[];
   /** The experiment that separates the best ones. */
-  next_experiment: string | null;
+  next: ProposedExperiment | null;
   /** A hint that the declared constants may be off. */
   constants_hint: string | null;
 }
