@@ -739,7 +739,7 @@ interface ShownEffect {
 
 /** An explanation that starts from the present model; errors in sigma. */
 interface ShownExplanation {
-  /** Error of the present model. */
+  /** Error of the model that it starts from: the present one, with constants in the middle of their ranges. */
   error_before: number;
   /** Error with all steps. */
   error_after: number;

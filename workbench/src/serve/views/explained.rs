@@ -14,7 +14,7 @@ use crate::text::words;
 /// An explanation that starts from the present model; errors in sigma.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ShownExplanation {
-    /// Error of the present model.
+    /// Error of the model that it starts from: the present one, with constants in the middle of their ranges.
     pub error_before: f64,
     /// Error with all steps.
     pub error_after: f64,
