@@ -145,7 +145,8 @@ fn a_data_sheet_becomes_the_model_of_a_machine() {
     );
     assert!((low..=high).contains(&truth));
 
-    let own = Tolerances::holding(&["cylinder.bore_mm".to_owned()], sheet.constants()).unwrap();
+    let mut own = Tolerances::default();
+    own.hold("cylinder.bore_mm", sheet.constants()).unwrap();
     let held = Options {
         tolerances: Some(&own),
         ..options

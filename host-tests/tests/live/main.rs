@@ -18,6 +18,7 @@ mod emulated_ecu;
 mod files_in_browser;
 mod fixed_parameter;
 mod instrument_in_browser;
+mod next_in_browser;
 mod overlay_in_browser;
 mod page_in_browser;
 mod panics;

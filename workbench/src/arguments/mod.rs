@@ -4,6 +4,7 @@ pub mod baseline;
 pub mod demonstration;
 pub mod effect;
 mod interruption;
+pub mod known_constants;
 pub mod model;
 pub mod next_command;
 pub mod search;

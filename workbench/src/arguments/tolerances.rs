@@ -1,8 +1,9 @@
 //! Own tolerances of constants, from the command line.
 
-use hitch_identification::constants::tolerances::{Own, Tolerances};
+use hitch_identification::constants::tolerances::Tolerances;
 use hitch_plant::Model;
 
+use super::known_constants::{KnownConstants, Within};
 use crate::error::Error;
 
 /// Arguments of a fit of constants.
@@ -25,30 +26,36 @@ impl ToleranceArgs {
     /// # Errors
     /// If a constant is not known, or a value is not one.
     pub fn applied_to(&self, model: Model) -> Result<(Tolerances, Model), Error> {
-        let (mut own, mut model) = (Tolerances::default(), model);
-        for name in &self.hold {
-            own.hold(name, model.constants()).map_err(of("--hold"))?;
-        }
-        for text in &self.tolerance {
+        self.known()?.applied_to(model)
+    }
+
+    /// What the arguments say of constants.
+    fn known(&self) -> Result<KnownConstants, Error> {
+        let tolerance = |text: &String| {
             let (name, value) = parts(text, "--tolerance", "NAME=VALUE or NAME=SHARE%")?;
-            let value = tolerance(value).ok_or_else(|| {
-                Error::Usage(format!(
-                    "--tolerance {text}: {value} is not a number above zero; --hold makes a constant exact"
-                ))
-            })?;
-            let sigma = Tolerances::sigma_of(name, value, model.constants());
-            own.set(name, sigma.map_err(of("--tolerance"))?);
-        }
-        for text in &self.bound {
-            let (name, range) = parts(text, "--bound", "NAME=LOW..HIGH")?;
-            let bounds = range.split_once("..").and_then(|(low, high)| {
-                Some([low.trim().parse().ok()?, high.trim().parse().ok()?])
-            });
-            let bounds = bounds
-                .ok_or_else(|| Error::Usage(format!("--bound {text}: {range} is not LOW..HIGH")))?;
-            model = own.bound(name, bounds, &model).map_err(of("--bound"))?;
-        }
-        Ok((own, model))
+            match value.parse() {
+                Ok(Within::Range(_)) => Err(Error::Usage(format!(
+                    "--tolerance {text}: {value} is a range; give it with --bound"
+                ))),
+                Ok(Within::Tolerance(_)) => Ok((name.to_owned(), value.to_owned())),
+                Err(what) => Err(Error::Usage(format!("--tolerance {text}: {what}"))),
+            }
+        };
+        let bound = |text: &String| {
+            let (name, value) = parts(text, "--bound", "NAME=LOW..HIGH")?;
+            match value.parse() {
+                Ok(Within::Range(_)) => Ok((name.to_owned(), value.to_owned())),
+                _ => Err(Error::Usage(format!(
+                    "--bound {text}: {value} is not LOW..HIGH"
+                ))),
+            }
+        };
+        let tolerances = self.tolerance.iter().map(tolerance);
+        let within = tolerances.chain(self.bound.iter().map(bound));
+        Ok(KnownConstants {
+            hold: self.hold.clone(),
+            within: within.collect::<Result<_, Error>>()?,
+        })
     }
 }
 
@@ -56,24 +63,4 @@ impl ToleranceArgs {
 fn parts<'a>(text: &'a str, argument: &str, form: &str) -> Result<(&'a str, &'a str), Error> {
     let parts = text.split_once('=');
     parts.ok_or_else(|| Error::Usage(format!("{argument} {text}: the form is {form}")))
-}
-
-/// A tolerance above zero.
-fn tolerance(text: &str) -> Option<Own> {
-    let (number, is_share) = match text.trim().strip_suffix('%') {
-        Some(share) => (share, true),
-        None => (text, false),
-    };
-    let number: f64 = number.trim().parse().ok()?;
-    let is_sound = number.is_finite() && number > 0.0;
-    is_sound.then_some(if is_share {
-        Own::Share(0.01 * number)
-    } else {
-        Own::Value(number)
-    })
-}
-
-/// A fault of an argument.
-fn of(argument: &'static str) -> impl Fn(String) -> Error {
-    move |what| Error::Usage(format!("{argument} {what}"))
 }

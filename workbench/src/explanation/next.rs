@@ -6,6 +6,10 @@ use serde::Serialize;
 
 use super::planned::{PlannedRun, planned};
 
+/// What the lines of two models decide.
+pub const TWO_LINES: &str =
+    "Where the two lines differ by more than the noise, the log decides between them.";
+
 /// The proposed next experiment, if any.
 #[derive(Debug, Clone, Default, Serialize, JsonSchema)]
 pub struct Next {

@@ -11,6 +11,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::import::run_block::RunBlock;
+use crate::text::known;
 
 /// Sample rate of a file of currents, Hz.
 const PROFILE_HZ: f64 = 100.0;
@@ -43,6 +44,23 @@ pub struct PlannedCurrents {
     pub lift_current_a: f64,
     /// Current of the lowering valve, A.
     pub lower_current_a: f64,
+}
+
+impl PlannedRun {
+    /// Its load, start, oil temperature and duration, in words.
+    #[must_use]
+    pub fn conditions(&self) -> String {
+        let parts = [
+            self.load_kg.map(|kg| format!("{} kg", known(kg, 0))),
+            self.port_pressure_bar
+                .map(|bar| format!("flow bench at {} bar", known(bar, 0))),
+            self.start_angle_deg
+                .map(|deg| format!("from {} deg", known(deg, 1))),
+            Some(format!("oil at {} °C", known(self.oil_temperature_c, 0))),
+            Some(format!("{} s", known(self.duration_s, 0))),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// The runs of a proposal.

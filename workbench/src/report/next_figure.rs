@@ -6,8 +6,7 @@ use maud::{Markup, html};
 
 use super::chart::Stroke;
 use super::drawn::{Drawn, drawn};
-use crate::explanation::{Next, PlannedRun};
-use crate::text::known;
+use crate::explanation::{Next, TWO_LINES};
 
 /// Titles of the axis of time.
 const TIME: &str = "time, s";
@@ -26,27 +25,13 @@ pub fn next_figure(next: &Next) -> Markup {
         h2 { "The next experiment" }
         p { (detail.manoeuvre) "." }
         @if expected.len() > 1 {
-            p { "Where the two lines differ by more than the noise, the log decides between them." }
+            p { (TWO_LINES) }
         }
         @for (index, run) in detail.runs.iter().enumerate() {
-            h3 { (format!("Run {}: {}", index + 1, conditions(run))) }
+            h3 { (format!("Run {}: {}", index + 1, run.conditions())) }
             (drawn(&format!("Currents and expected channels of run {}", index + 1), &charts(&expected, index)))
         }
     }
-}
-
-/// Load, start, oil temperature and duration of a run.
-fn conditions(run: &PlannedRun) -> String {
-    let parts = [
-        run.load_kg.map(|kg| format!("{} kg", known(kg, 0))),
-        run.port_pressure_bar
-            .map(|bar| format!("flow bench at {} bar", known(bar, 0))),
-        run.start_angle_deg
-            .map(|deg| format!("from {} deg", known(deg, 1))),
-        Some(format!("oil at {} °C", known(run.oil_temperature_c, 0))),
-        Some(format!("{} s", known(run.duration_s, 0))),
-    ];
-    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// The currents of a run, then each channel as every model expects it.

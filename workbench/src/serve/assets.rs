@@ -35,6 +35,12 @@ const FILES: &[(&str, &str, &str)] = &[
         SCRIPT,
         include_str!("assets/controller.js"),
     ),
+    ("constants.js", SCRIPT, include_str!("assets/constants.js")),
+    (
+        "next_experiment.js",
+        SCRIPT,
+        include_str!("assets/next_experiment.js"),
+    ),
     ("way.js", SCRIPT, include_str!("assets/way.js")),
     ("files.js", SCRIPT, include_str!("assets/files.js")),
     ("second.js", SCRIPT, include_str!("assets/second.js")),

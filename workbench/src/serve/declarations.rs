@@ -7,12 +7,13 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value};
 
-use super::first::Sheet;
+use super::first::{CheckedConstants, Sheet};
 use super::live::answer::LoopAnswer;
 use super::own_term::FormulaElements;
 use super::routes::Checked;
 use super::upload::surveyed::Surveyed;
 use super::views::message::Message;
+use super::views::next_experiment::ExpectedRuns;
 use super::views::run::RunView;
 use super::views::state::Begun;
 use super::views::trial::{RunParts, Signature, TriedRuns};
@@ -78,6 +79,8 @@ fn views(generator: &mut SchemaGenerator) {
     root::<ModelMap>(generator);
     root::<Surveyed>(generator);
     root::<Sheet>(generator);
+    root::<CheckedConstants>(generator);
+    root::<ExpectedRuns>(generator);
     root::<FormulaElements>(generator);
     root::<Checked>(generator);
     root::<Described>(generator);

@@ -17,6 +17,7 @@ use serde_json::json;
 use super::refusal::Refusal;
 use super::request::{Answer, Known, Of, blocking, find, lock};
 use super::sessions::{Sessions, Shared};
+use crate::arguments::known_constants::{ConstantFault, KnownConstants};
 use crate::base_model::data_sheet::{self, QUESTIONS};
 use crate::error::Error;
 
@@ -44,6 +45,7 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/first/named", post(named))
         .route("/{token}/api/first/sheet", get(sheet).post(from_sheet))
         .route("/{token}/api/first/back", post(back))
+        .route("/{token}/api/first/known", post(known))
 }
 
 /// A model file for a session.
@@ -191,6 +193,28 @@ fn end(name: &str) -> Option<(usize, usize)> {
         .position(|(valve, _)| valve.table() == table)?;
     let end = ENDS.iter().position(|(known, _)| *known == key)?;
     Some((valve, end))
+}
+
+/// What is known of constants, to look at.
+#[derive(Debug, Deserialize)]
+struct Draft {
+    session: String,
+    known: KnownConstants,
+}
+
+/// The answer about what is known of constants.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct CheckedConstants {
+    /// What is wrong with it.
+    faults: Vec<ConstantFault>,
+}
+
+/// What is wrong with what is known of constants of the present model.
+async fn known(State(sessions): Known, Json(draft): Json<Draft>) -> Answer<CheckedConstants> {
+    let session = find(&sessions, &draft.session)?;
+    let model = lock(&session).rebuilt();
+    let faults = blocking(move || draft.known.faults(&model)).await?;
+    Ok(Json(CheckedConstants { faults }))
 }
 
 async fn back(State(sessions): Known, Json(of): Json<Of>) -> Answer {

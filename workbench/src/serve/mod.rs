@@ -10,6 +10,7 @@ mod first;
 mod guard;
 mod jobs;
 mod live;
+mod next_routes;
 mod own_term;
 mod parameters;
 mod refusal;

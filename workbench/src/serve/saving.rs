@@ -62,7 +62,7 @@ async fn all(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, R
 }
 
 /// An answer that a browser saves as a file.
-fn attached(kind: &'static str, name: &str, content: impl IntoResponse) -> Response {
+pub(super) fn attached(kind: &'static str, name: &str, content: impl IntoResponse) -> Response {
     let headers = [
         (header::CONTENT_TYPE, kind.to_owned()),
         (
@@ -92,12 +92,11 @@ fn calibration_text(session: &Session) -> Result<String, Error> {
 
 /// The report of the explanation; without one, of the present model against the campaign.
 fn page(session: &Shared) -> String {
-    let (explained, evaluated, model, first) = {
+    let (explained, evaluated, first) = {
         let session = lock(session);
         (
             session.present_explanation().cloned(),
             Arc::clone(&session.present().evaluated),
-            session.model(),
             Arc::clone(session.subject()),
         )
     };
@@ -111,6 +110,7 @@ fn page(session: &Shared) -> String {
         shown: explained.shown.clone(),
     };
     let experiment = first.experiment().clone();
+    let model = explained.model.clone();
     explanation_page::page(&Found::finished(experiment, model, found))
 }
 

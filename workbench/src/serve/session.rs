@@ -67,8 +67,10 @@ impl Ranking {
 /// Explanation of the campaign from the model of a step.
 #[derive(Debug)]
 pub struct Explained {
-    /// The model that it starts from.
+    /// The present model when it was asked for.
     pub of: Arc<Evaluated>,
+    /// The model that it starts from: the present one, with constants in the middle of their ranges.
+    pub model: Model,
     /// The result.
     pub explanation: explain::Explanation,
     /// A term for the remaining error.

@@ -19,6 +19,7 @@ use super::session::{Explained, Ranking, Session, Step};
 use super::source::Subject;
 use super::tuned::TunedFor;
 use crate::arguments::effect::find;
+use crate::arguments::known_constants::KnownConstants;
 use crate::arguments::search::BUDGET_S;
 use crate::error::Error;
 
@@ -73,8 +74,8 @@ pub enum Task {
     Explain(Search),
     /// Fit the constants of the present model, which becomes the first model.
     Constants {
-        /// Constants that are exact.
-        hold: Vec<String>,
+        /// What is known of them.
+        known: KnownConstants,
     },
     /// Tune the calibration of the present model.
     Tune {
@@ -106,8 +107,8 @@ pub struct Search {
     budget_s: f64,
     /// Whether the constants come from data sheets and are fitted together with the effects.
     data_sheet: bool,
-    /// Constants that are exact.
-    hold: Vec<String>,
+    /// What is known of constants that are fitted.
+    known: KnownConstants,
 }
 
 impl Default for Search {
@@ -115,7 +116,7 @@ impl Default for Search {
         Self {
             budget_s: BUDGET_S,
             data_sheet: false,
-            hold: Vec::new(),
+            known: KnownConstants::default(),
         }
     }
 }
@@ -131,16 +132,19 @@ pub struct Ready {
     what: What,
 }
 
-/// The tolerances of a fit that holds some constants.
-fn held_exact(hold: &[String], model: &Model) -> Result<Tolerances, Refusal> {
-    Tolerances::holding(hold, model.constants()).map_err(|what| Error::Usage(what).into())
+/// Where a fit of constants starts.
+struct Start {
+    /// The model.
+    model: Box<Model>,
+    /// Tolerances of its constants.
+    tolerances: Tolerances,
 }
 
 /// A checked task.
 enum What {
     Rank,
-    Explain(Search, Tolerances),
-    Constants(Tolerances),
+    Explain(Search, Start),
+    Constants(Start),
     Tune(usize),
     Add(&'static dyn Effect),
     Remove(usize),
@@ -202,12 +206,15 @@ impl Ready {
             Task::Rank => What::Rank,
             Task::Explain(search) => {
                 check_search(&search)?;
-                let own = held_exact(&search.hold, &session.subject().model)?;
-                What::Explain(search, own)
+                let present = session.fit().estimate.applied_to(&session.model());
+                let start = if search.data_sheet {
+                    Start::new(&search.known, present)?
+                } else {
+                    Start::new(&KnownConstants::default(), present)?
+                };
+                What::Explain(search, start)
             }
-            Task::Constants { hold } => {
-                What::Constants(held_exact(&hold, &session.subject().model)?)
-            }
+            Task::Constants { known } => What::Constants(Start::new(&known, session.rebuilt())?),
             Task::Tune { trials } if TRIALS.contains(&trials) => What::Tune(trials),
             Task::Tune { .. } => {
                 let (low, high) = (TRIALS.start(), TRIALS.end());
@@ -285,6 +292,20 @@ impl Ready {
     }
 }
 
+impl Start {
+    /// A model with what is known of its constants.
+    ///
+    /// # Errors
+    /// If that is wrong.
+    fn new(known: &KnownConstants, model: Model) -> Result<Self, Error> {
+        let (tolerances, model) = known.applied_to(model)?;
+        Ok(Self {
+            model: Box::new(model),
+            tolerances,
+        })
+    }
+}
+
 /// Whether the time of a search is one.
 fn check_search(search: &Search) -> Result<(), Refusal> {
     if BUDGETS_S.contains(&search.budget_s) {
@@ -315,5 +336,55 @@ fn lacking(session: &Session, effect: &'static dyn Effect) -> Result<&'static dy
         Err(Refusal::conflict("the model has this effect already"))
     } else {
         Ok(effect)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::serve::Source;
+
+    /// Bore, mm, from which a task of the page starts.
+    fn starts_at_mm(session: &Session, task: serde_json::Value) -> Result<f64, Refusal> {
+        let ready = Ready::new(session, serde_json::from_value(task).unwrap())?;
+        let (What::Explain(_, start) | What::Constants(start)) = &ready.what else {
+            panic!("no fit of constants");
+        };
+        Ok(1e3 * start.model.constants().cylinder.bore_m)
+    }
+
+    #[test]
+    fn a_fit_and_an_explanation_of_constants_start_in_the_middle_of_a_range() {
+        let source = Source {
+            campaign: None,
+            model: hitch_model_file::nominal(),
+            baseline: None,
+        };
+        let session = Session::new(Arc::new(source.read().unwrap()));
+        let declared_mm = 1e3 * session.subject().model.constants().cylinder.bore_m;
+        let known = |text: &str| json!({ "within": [["cylinder.bore_mm", text]] });
+        let middle_mm = f64::sqrt(80.0 * 82.0);
+        for (task, wanted_mm) in [
+            (
+                json!({ "task": "constants", "known": known("80..82") }),
+                middle_mm,
+            ),
+            (
+                json!({ "task": "explain", "data_sheet": true, "known": known("80..82") }),
+                middle_mm,
+            ),
+            (
+                json!({ "task": "explain", "data_sheet": false, "known": known("80..82") }),
+                declared_mm,
+            ),
+            (json!({ "task": "explain" }), declared_mm),
+        ] {
+            let start_mm = starts_at_mm(&session, task.clone()).ok().unwrap();
+            assert!((start_mm - wanted_mm).abs() < 1e-9, "{task}: {start_mm} mm");
+        }
+        let wrong = json!({ "task": "constants", "known": known("wide") });
+        assert!(starts_at_mm(&session, wrong).is_err());
     }
 }

@@ -65,6 +65,8 @@ interface Answers {
   formulas: FormulaElements;
   check: Checked;
   "first/sheet": Sheet;
+  "first/known": CheckedConstants;
+  "next/expected": ExpectedRuns;
   "upload/survey": Surveyed;
 }
 

@@ -79,6 +79,12 @@ interface Checked {
   fault: Fault | null;
 }
 
+/** The answer about what is known of constants. */
+interface CheckedConstants {
+  /** What is wrong with it. */
+  faults: ConstantFault[];
+}
+
 /** The connection to an ECU on the bus. */
 interface Connection {
   /** Whether the adapter is connected. */
@@ -91,11 +97,19 @@ interface Connection {
   position_percent: number | null;
 }
 
-/** The constants of the first model. */
+/** What is wrong with what is known of a constant. */
+interface ConstantFault {
+  /** Name of the constant. */
+  name: string;
+  /** What is wrong, and how to mend it. */
+  what: string;
+}
+
+/** The constants of a session. */
 interface Constants {
-  /** Names of those that a fit can hold. */
-  names: string[];
-  /** The fit. */
+  /** Those that a fit moves. */
+  movable: MovableConstant[];
+  /** The fit of the first model's. */
   fitted: FittedConstants | null;
 }
 
@@ -179,6 +193,32 @@ interface EffectTexts {
   source: string;
   /** Meanings of its parameters. */
   parameters: ParameterMeaning[];
+}
+
+/** A run to log. */
+interface ExpectedRun {
+  /** Its load, start, oil temperature and duration. */
+  conditions: string;
+  /** Its currents, and each channel as every model expects it. */
+  plot: RowPlot;
+}
+
+/** What models expect of the runs of a proposed experiment. */
+interface ExpectedRuns {
+  /** The models, in the order of their lines. */
+  models: ExpectingModel[];
+  /** What the lines decide; `null` for a single model. */
+  decides: string | null;
+  /** The runs. */
+  runs: ExpectedRun[];
+}
+
+/** A model that expects something of the runs. */
+interface ExpectingModel {
+  /** Name of its lines. */
+  name: string;
+  /** Title of the effect that it has, or that it is the present model. */
+  title: string;
 }
 
 /** A step of an explanation; errors in sigma. */
@@ -413,6 +453,16 @@ interface ModelMap {
   cells: LocatedCell[];
 }
 
+/** A constant that a fit moves. */
+interface MovableConstant {
+  /** Its name in a model file. */
+  name: string;
+  /** Its declared value with the unit, of currents the threshold; of a curve, that it is one. */
+  declared: string;
+  /** Its usual tolerance, as a user gives one. */
+  usual: string;
+}
+
 /** Figures of a move. */
 interface MoveFigures {
   /** Angle at the start, degree. */
@@ -502,6 +552,14 @@ interface ProposedColumn {
   name: string;
   /** The unit that the log states. */
   unit: string | null;
+}
+
+/** A proposed experiment. */
+interface ProposedExperiment {
+  /** Manoeuvre and purpose, as a sentence without a full stop. */
+  sentence: string;
+  /** Whether there are runs to log. */
+  has_runs: boolean;
 }
 
 /** Logs with equal columns. */
@@ -681,7 +739,7 @@ interface ShownEffect {
 
 /** An explanation that starts from the present model; errors in sigma. */
 interface ShownExplanation {
-  /** Error of the present model. */
+  /** Error of the model that it starts from: the present one, with constants in the middle of their ranges. */
   error_before: number;
   /** Error with all steps. */
   error_after: number;
@@ -702,7 +760,7 @@ interface ShownExplanation {
   /** Ids of effects that are not detectable in the campaign. */
   not_visible: string[];
   /** The most informative next experiment, if one is needed. */
-  next_experiment: string | null;
+  next: ProposedExperiment | null;
 }
 
 /** A parameter with the range of its slider; values in its unit. */
@@ -734,7 +792,7 @@ interface ShownRanking {
   /** The candidates, best first. */
   candidates: ShownCandidate[];
   /** The experiment that separates the best ones. */
-  next_experiment: string | null;
+  next: ProposedExperiment | null;
   /** A hint that the declared constants may be off. */
   constants_hint: string | null;
 }
@@ -807,7 +865,7 @@ interface State {
   earlier_model: string | null;
   /** The steps from data to a saved calibration. */
   way: WayStep[];
-  /** Constants of the first model. */
+  /** Constants that a fit moves, and their fit. */
   constants: Constants;
   /** The tuned calibration of the present model. */
   tuned: TunedCalibration | null;

@@ -8,6 +8,7 @@ pub mod correction;
 pub mod directions;
 pub mod fitted;
 pub mod free;
+pub mod movable;
 pub mod parameter;
 pub mod prior;
 pub mod tolerances;

@@ -75,7 +75,7 @@ impl Prior {
 }
 
 /// One sigma of an unknown by the tolerances of data sheets.
-fn usual_sigma(parameter: Parameter) -> f64 {
+pub fn usual_sigma(parameter: Parameter) -> f64 {
     match parameter {
         Parameter::Scalar(_, tolerance) => tolerance.sigma,
         Parameter::Sensor(sensor) => sensor.tolerance,

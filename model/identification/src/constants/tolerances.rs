@@ -18,18 +18,6 @@ pub const FARTHEST_SIGMAS: f64 = 3.0;
 pub struct Tolerances(BTreeMap<String, f64>);
 
 impl Tolerances {
-    /// The usual tolerances, but for constants that are exact.
-    ///
-    /// # Errors
-    /// A fit does not move one of them.
-    pub fn holding(exact: &[String], constants: &Constants) -> Result<Self, String> {
-        let mut own = Self::default();
-        for name in exact {
-            own.hold(name, constants)?;
-        }
-        Ok(own)
-    }
-
     /// Makes a constant exact.
     ///
     /// # Errors
@@ -59,11 +47,11 @@ impl Tolerances {
         let parameter = named(name, model.constants())?;
         if !(low > 0.0 && high > low && high.is_finite()) {
             return Err(format!(
-                "{name}: {low} to {high} are not two rising values above zero"
+                "{low} to {high} are not two rising values above zero"
             ));
         }
         let declared = declared(&parameter, model.constants())
-            .ok_or_else(|| format!("{name}: a curve has no single value; give it a tolerance"))?;
+            .ok_or("a curve has no single value; give it a tolerance in percent")?;
         let (half, shift) = match parameter {
             Parameter::Threshold(_) => (0.5 * (high - low), 0.5 * (high + low) - declared),
             _ => (
@@ -73,7 +61,7 @@ impl Tolerances {
         };
         self.set(name, half / FARTHEST_SIGMAS);
         corrected(model, &[parameter], &DVector::from_element(1, shift))
-            .ok_or_else(|| format!("{name}: no linkage has {low} to {high}"))
+            .ok_or_else(|| format!("no linkage has {low} to {high}"))
     }
 
     /// The standard deviation of a constant from a value in the unit of its key, or from a share of it.
@@ -87,9 +75,7 @@ impl Tolerances {
             (Parameter::Threshold(_), Own::Share(share), Some(declared)) => Ok(share * declared),
             (_, Own::Share(share), _) => Ok(share),
             (_, Own::Value(value), Some(declared)) => Ok(value / declared),
-            (_, Own::Value(_), None) => {
-                Err(format!("{name}: give the tolerance of a curve in percent"))
-            }
+            (_, Own::Value(_), None) => Err("give the tolerance of a curve in percent".to_owned()),
         }
     }
 
@@ -117,33 +103,23 @@ pub enum Own {
     Share(f64),
 }
 
-/// Names of the constants that a fit moves, each once: `table.key`.
-#[must_use]
-pub fn names(constants: &Constants) -> Vec<String> {
-    let mut known: Vec<String> = Vec::new();
-    for parameter in parameters(constants) {
-        known.extend(parameter.name().filter(|name| !known.contains(name)));
-    }
-    known
-}
-
 /// The first unknown of a name.
 fn named(name: &str, constants: &Constants) -> Result<Parameter, String> {
     let mut all = parameters(constants).into_iter();
     let found = all.find(|one| one.name().as_deref() == Some(name));
-    found.ok_or_else(|| unknown(name, constants))
+    found.ok_or_else(|| unknown(constants))
 }
 
-fn unknown(name: &str, constants: &Constants) -> String {
-    let known = names(constants);
-    format!(
-        "{name}: no constant that is fitted; there are {}",
-        known.join(", ")
-    )
+fn unknown(constants: &Constants) -> String {
+    let mut known: Vec<String> = Vec::new();
+    for parameter in parameters(constants) {
+        known.extend(parameter.name().filter(|name| !known.contains(name)));
+    }
+    format!("no constant that is fitted; there are {}", known.join(", "))
 }
 
 /// Declared value in the unit of the key: the threshold of a curve, none for its flows.
-fn declared(parameter: &Parameter, constants: &Constants) -> Option<f64> {
+pub(super) fn declared(parameter: &Parameter, constants: &Constants) -> Option<f64> {
     match parameter {
         Parameter::Scalar(constant, _) => {
             Some(*(constant.place)(&mut constants.clone()) / constant.unit)

@@ -1,7 +1,7 @@
 // @ts-check
 /** The calibration of the controller: tuning with its figures, and the files to save. */
 import { byId, element, number } from "./dom.js";
-import { address, refusal } from "./server.js";
+import { save } from "./server.js";
 
 /** Controls that save a file, with its address and its name.
  * @type {Record<string, [string, string]>} */
@@ -26,18 +26,6 @@ export function connectController(guarded, saved, run) {
   }
   byId("tune").addEventListener("click", () => run({ task: "tune",
     trials: Math.round(Number(/** @type {HTMLInputElement} */ (byId("tune-trials")).value)) }));
-}
-
-/** Saves a file of the session; a refusal is thrown, where a link would save its text.
- * @param {string} path
- * @param {string} name */
-async function save(path, name) {
-  const response = await fetch(address(path));
-  if (!response.ok) throw await refusal(response);
-  const url = URL.createObjectURL(await response.blob());
-  element("a", { href: url, download: name }).click();
-  // The browser has taken the file by then.
-  setTimeout(() => URL.revokeObjectURL(url), 60_000);
 }
 
 /** Draws the tuned calibration.

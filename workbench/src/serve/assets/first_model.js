@@ -1,7 +1,9 @@
 // @ts-check
 /** The first model: exchanged for a file, a starting point or the values of data sheets; and the fit of its constants. */
 import { byId, element } from "./dom.js";
+import { check, drawKnown, known } from "./constants.js";
 import { faultLines } from "./fault.js";
+import { sayError } from "./message.js";
 import { ask, post, send } from "./server.js";
 
 /** Questions of the form, with the values that it had.
@@ -40,13 +42,9 @@ export function connectFirst(exchanged, run) {
     event.preventDefault();
     exchange(() => post("first/sheet", { name: /** @type {HTMLInputElement} */ (byId("sheet-name")).value, values: changed() }));
   });
-  byId("constants-fit").addEventListener("click", () => run({ task: "constants", hold: held() }));
-}
-
-/** Names of the constants that a fit holds. */
-export function held() {
-  const boxes = /** @type {NodeListOf<HTMLInputElement>} */ (byId("hold").querySelectorAll("input:checked"));
-  return [...boxes].map((box) => box.value);
+  byId("constants-fit").addEventListener("click", async () => {
+    if (await check().catch(sayError)) await run({ task: "constants", known: known() });
+  });
 }
 
 /** Draws the first model and its constants.
@@ -56,19 +54,11 @@ export function drawFirst(state) {
   const back = byId("first-back");
   back.hidden = state.earlier_model === null;
   back.textContent = `Back to ${state.earlier_model}`;
-  drawHold(state.constants.names);
+  drawKnown(state.constants.movable);
   drawFitted(state.constants.fitted);
   const sheet = /** @type {HTMLDetailsElement} */ (byId("sheet"));
   if (sheet.open && questions.length && sheet.dataset.model !== state.model) sheet.open = false;
   sheet.dataset.model = state.model;
-}
-
-/** Draws the constants that a fit can hold; those that are marked stay marked.
- * @param {string[]} names */
-function drawHold(names) {
-  const marked = held();
-  byId("hold").replaceChildren(...names.map((name) => element("label", {},
-    element("input", { type: "checkbox", value: name, checked: marked.includes(name) }), ` ${name}`)));
 }
 
 /** Draws the fitted constants.

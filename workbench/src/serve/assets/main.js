@@ -1,12 +1,13 @@
 // @ts-check
 /** State of the page, and handlers of its controls. */
 import { connectLoop, followModel, redrawLoop } from "./closed_loop.js";
+import { known } from "./constants.js";
 import { connectController, drawController } from "./controller.js";
 import { byId, element, painted, sigmas } from "./dom.js";
 import { worstCell } from "./error_map.js";
 import { faultLines } from "./fault.js";
 import { connectFiles } from "./files.js";
-import { connectFirst, drawFirst, held } from "./first_model.js";
+import { connectFirst, drawFirst } from "./first_model.js";
 import { say, sayError } from "./message.js";
 import { drawMissing, drawRanking, insert, meaning } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
@@ -320,7 +321,7 @@ byId("undo").addEventListener("click", () => acts.go(state.at - 1));
 byId("redo").addEventListener("click", () => acts.go(state.at + 1));
 byId("fit").addEventListener("click", () => acts.run({ task: "fit" }));
 byId("rank").addEventListener("click", () => acts.run({ task: "rank" }));
-byId("explain").addEventListener("click", () => acts.run({ task: "explain", hold: held(),
+byId("explain").addEventListener("click", () => acts.run({ task: "explain", known: known(),
   budget_s: Number(/** @type {HTMLInputElement} */ (byId("explain-budget")).value),
   data_sheet: /** @type {HTMLInputElement} */ (byId("explain-sheet")).checked }));
 byId("cancel").addEventListener("click", guarded(async () => {

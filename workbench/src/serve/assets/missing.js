@@ -1,6 +1,7 @@
 // @ts-check
 /** Missing effects: ranking of single effects, and explanation as a set of effects. */
 import { byId, element, number, sigmas } from "./dom.js";
+import { experiment } from "./next_experiment.js";
 
 /** Explained share or confidence below which an effect is not detectable. */
 const SIGN = 0.005;
@@ -15,7 +16,7 @@ const SIGN = 0.005;
  * @param {Acts} acts */
 export function drawMissing(state, acts) {
   byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, state, acts.run) : []));
-  if (state.ranking) drawRanking(state.ranking.candidates, acts, state, state.ranking.next_experiment);
+  if (state.ranking) drawRanking(state.ranking.candidates, acts, state, experiment("ranking", "Experiment that separates them", state.ranking));
   else byId("ranking").replaceChildren();
   if (state.ranking?.constants_hint) byId("ranking").append(element("p", {}, state.ranking.constants_hint));
 }
@@ -24,15 +25,15 @@ export function drawMissing(state, acts) {
  * @param {ShownCandidate[]} candidates
  * @param {Acts} acts
  * @param {State} state
- * @param {string | null} [next] */
-export function drawRanking(candidates, acts, state, next = null) {
+ * @param {HTMLElement[]} [next] the experiment that separates them */
+export function drawRanking(candidates, acts, state, next = []) {
   const shows = (/** @type {ShownCandidate} */ one) => one.explains >= SIGN || (one.confidence ?? 0) >= SIGN;
   const seen = candidates.filter(shows);
   const unseen = candidates.filter((one) => !shows(one));
   /** @type {HTMLElement[]} */
   const parts = [element("h3", {}, "Each effect alone"), ...seen.map((one) => candidate(one, acts, state))];
   if (candidates.length > 0 && seen.length === 0) parts.push(element("p", {}, "No effect is detectable in these data."));
-  if (next) parts.push(element("p", {}, `Experiment that separates them: ${next}.`));
+  parts.push(...next);
   if (unseen.length > 0) {
     parts.push(element("details", {}, element("summary", {}, `${unseen.length} more, not detectable in these data`),
       ...unseen.map((one) => candidate(one, acts, state))));
@@ -127,7 +128,7 @@ function explanation(found, state, run) {
     ...found.doubtful.map((sentence) => element("p", {}, sentence)),
     ...(found.steps.length || found.constants ? [take] : []),
     ...(found.suggested ? [suggested(found.suggested, run)] : []),
-    ...(found.next_experiment ? [element("p", {}, `Next experiment: ${found.next_experiment}.`)] : []),
+    ...experiment("explanation", "Next experiment", found),
     ...(found.not_visible.length ? [element("details", {},
       element("summary", {}, `${found.not_visible.length} effects are not detectable in this campaign`),
       element("p", {}, found.not_visible.join(", ")))] : [])];

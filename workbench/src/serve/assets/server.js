@@ -1,5 +1,6 @@
 // @ts-check
 /** Requests to the server. */
+import { element } from "./dom.js";
 import { Refused } from "./refused.js";
 
 let session = "";
@@ -56,9 +57,22 @@ export function address(path, query = {}) {
   return `api/${path}?${new URLSearchParams(pairs)}`;
 }
 
+/** Saves a file of the session; a refusal is thrown, where a link would save its text.
+ * @param {string} path
+ * @param {string} name
+ * @param {Record<string, string>} [query] */
+export async function save(path, name, query = {}) {
+  const response = await fetch(address(path, query));
+  if (!response.ok) throw await refusal(response);
+  const url = URL.createObjectURL(await response.blob());
+  element("a", { href: url, download: name }).click();
+  // The browser has taken the file by then.
+  setTimeout(() => URL.revokeObjectURL(url), 60_000);
+}
+
 /** The refusal that a response has.
  * @param {Response} response */
-export async function refusal(response) {
+async function refusal(response) {
   const body = await response.json().catch(() => ({ fault: { what: `The server answered ${response.status}.` } }));
   return new Refused(body.fault);
 }

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hitch_identification::base::fit_base_model;
-use hitch_identification::constants::tolerances::Tolerances;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
@@ -26,7 +25,7 @@ use crate::serve::session::{Explained, Ranking, Step};
 use crate::serve::tuned::TunedFor;
 use crate::serve::views::candidate::ShownCandidate;
 
-use super::{Outcome, Ready, Search, What};
+use super::{Outcome, Ready, Search, Start, What};
 
 /// Maximum number of rounds of a fit before the final one, and the relative decrease of the cost that continues it.
 const ROUNDS: usize = 6;
@@ -38,10 +37,10 @@ impl Ready {
         let before = &self.present.evaluated.fit;
         match &self.what {
             What::Rank => Outcome::Ranking(Arc::new(self.rank(reporter))),
-            What::Explain(search, own) => {
-                Outcome::Explained(Arc::new(self.explain(search, own, reporter)))
+            What::Explain(search, start) => {
+                Outcome::Explained(Arc::new(self.explain(search, start, reporter)))
             }
-            What::Constants(hold) => self.constants(hold, reporter),
+            What::Constants(start) => self.constants(start, reporter),
             What::Tune(trials) => self.tune(*trials, reporter),
             What::Add(effect) => {
                 let title = format!("Added {}", full_name(*effect));
@@ -97,9 +96,9 @@ impl Ready {
     }
 
     /// The present model with its constants fitted, as the first model.
-    fn constants(&self, own: &Tolerances, reporter: &Reporter) -> Outcome {
-        let declared = &self.rebuilt;
-        let mut fit = fit_base_model(self.experiment(), declared, own, &|what| {
+    fn constants(&self, start: &Start, reporter: &Reporter) -> Outcome {
+        let (declared, tolerances) = (&start.model, &start.tolerances);
+        let mut fit = fit_base_model(self.experiment(), declared, tolerances, &|what| {
             reporter.progress(what, None, None);
         });
         fit.model.name = format!("{}-fitted", self.subject.model.name);
@@ -155,9 +154,8 @@ impl Ready {
         }
     }
 
-    fn explain(&self, search: &Search, own: &Tolerances, reporter: &Reporter) -> Explained {
-        let estimate = &self.present.evaluated.fit.estimate;
-        let model = estimate.applied_to(self.model());
+    fn explain(&self, search: &Search, start: &Start, reporter: &Reporter) -> Explained {
+        let model = &start.model;
         reporter.progress("fitting the clocks and loads", None, None);
         let options = Options {
             limit: reporter.limit(search.budget_s),
@@ -166,10 +164,10 @@ impl Ready {
             } else {
                 Accuracy::default()
             },
-            tolerances: Some(own),
+            tolerances: Some(&start.tolerances),
             ..Options::default()
         };
-        let explained = explanation::Explained::new(self.experiment(), &model, options, &|what| {
+        let explained = explanation::Explained::new(self.experiment(), model, options, &|what| {
             reporter.progress(&format!("trying {what}"), None, None);
         });
         let explanation::Explained {
@@ -180,6 +178,7 @@ impl Ready {
         Explained {
             suggestion,
             of: Arc::clone(&self.present.evaluated),
+            model: (**model).clone(),
             explanation,
             shown,
         }

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::effect_texts::EffectTexts;
+use super::next_experiment::ProposedExperiment;
 use crate::base_model::fit::ShownConstant;
 use crate::explanation::{Corrected, Parameter, Step, Suggested};
 use crate::serve::session::Explained;
@@ -13,7 +14,7 @@ use crate::text::words;
 /// An explanation that starts from the present model; errors in sigma.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ShownExplanation {
-    /// Error of the present model.
+    /// Error of the model that it starts from: the present one, with constants in the middle of their ranges.
     pub error_before: f64,
     /// Error with all steps.
     pub error_after: f64,
@@ -34,7 +35,7 @@ pub struct ShownExplanation {
     /// Ids of effects that are not detectable in the campaign.
     pub not_visible: Vec<&'static str>,
     /// The most informative next experiment, if one is needed.
-    pub next_experiment: Option<String>,
+    pub next: Option<ProposedExperiment>,
 }
 
 /// A step of an explanation; errors in sigma.
@@ -109,7 +110,7 @@ impl ShownExplanation {
                 .iter()
                 .map(|effect| effect.effect)
                 .collect(),
-            next_experiment: shown.next.next_experiment.clone(),
+            next: ProposedExperiment::of(&shown.next),
         }
     }
 }

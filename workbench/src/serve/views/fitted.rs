@@ -1,19 +1,32 @@
-//! The constants of the first model: which can be held in a fit, and the fit, if there was one.
+//! The constants of the present model that a fit moves, and the fit of the first model, if there was one.
 
-use hitch_identification::constants::tolerances::names;
+use hitch_identification::constants::movable::Movable;
+use hitch_identification::constants::tolerances::Own;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::base_model::fit::{ShownBaseFit, ShownConstant};
-use crate::serve::source::Subject;
+use crate::base_model::fit::{ShownBaseFit, ShownConstant, digits};
+use crate::serve::session::Session;
+use crate::text::significant;
 
-/// The constants of the first model.
+/// The constants of a session.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Constants {
-    /// Names of those that a fit can hold.
-    pub names: Vec<String>,
-    /// The fit.
+    /// Those that a fit moves.
+    pub movable: Vec<MovableConstant>,
+    /// The fit of the first model's.
     pub fitted: Option<FittedConstants>,
+}
+
+/// A constant that a fit moves.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct MovableConstant {
+    /// Its name in a model file.
+    pub name: String,
+    /// Its declared value with the unit, of currents the threshold; of a curve, that it is one.
+    pub declared: String,
+    /// Its usual tolerance, as a user gives one.
+    pub usual: String,
 }
 
 /// Constants that were fitted.
@@ -43,11 +56,29 @@ pub struct FittedRow {
 }
 
 impl Constants {
-    /// The constants of a first model.
-    pub fn of(subject: &Subject) -> Self {
+    /// The constants of the present model, from which a fit starts.
+    pub fn of(session: &Session) -> Self {
+        let movable = Movable::all(session.rebuilt().constants());
+        let fitted = session.subject().fitted.as_ref();
         Self {
-            names: names(subject.model.constants()),
-            fitted: subject.fitted.as_ref().map(FittedConstants::of),
+            movable: movable.into_iter().map(MovableConstant::of).collect(),
+            fitted: fitted.map(FittedConstants::of),
+        }
+    }
+}
+
+impl MovableConstant {
+    fn of(one: Movable) -> Self {
+        let declared = one.declared.map(digits);
+        Self {
+            name: one.name,
+            declared: declared.map_or("a curve".to_owned(), |value| {
+                format!("{value} {}", one.unit)
+            }),
+            usual: match one.usual {
+                Own::Share(share) => format!("{} %", significant(100.0 * share, 2)),
+                Own::Value(value) => significant(value, 2),
+            },
         }
     }
 }

@@ -5,6 +5,7 @@ pub mod effect_texts;
 pub mod explained;
 pub mod fitted;
 pub mod message;
+pub mod next_experiment;
 pub mod ranking;
 pub mod run;
 pub mod second;

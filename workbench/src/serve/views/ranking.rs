@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::candidate::ShownCandidate;
 use super::effect_texts::EffectTexts;
+use super::next_experiment::ProposedExperiment;
 use crate::explanation::Candidate;
 use crate::serve::session::Ranking;
 use crate::text::words;
@@ -17,7 +18,7 @@ pub struct ShownRanking {
     /// The candidates, best first.
     pub candidates: Vec<ShownCandidate>,
     /// The experiment that separates the best ones.
-    pub next_experiment: Option<String>,
+    pub next: Option<ProposedExperiment>,
     /// A hint that the declared constants may be off.
     pub constants_hint: Option<String>,
 }
@@ -41,7 +42,7 @@ impl ShownRanking {
         Self {
             error_before: shown.head.error_before,
             candidates: shown.candidates.iter().filter_map(candidate).collect(),
-            next_experiment: shown.next.next_experiment.clone(),
+            next: ProposedExperiment::of(&shown.next),
             constants_hint: shown.constants_hint(),
         }
     }

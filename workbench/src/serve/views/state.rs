@@ -30,7 +30,7 @@ pub struct State {
     pub earlier_model: Option<String>,
     /// The steps from data to a saved calibration.
     pub way: Vec<WayStep>,
-    /// Constants of the first model.
+    /// Constants that a fit moves, and their fit.
     pub constants: Constants,
     /// The tuned calibration of the present model.
     pub tuned: Option<TunedCalibration>,
@@ -108,7 +108,7 @@ impl State {
             model: words::named(&subject.model),
             earlier_model: session.earlier().map(str::to_owned),
             way: WayStep::all(session),
-            constants: Constants::of(session.subject()),
+            constants: Constants::of(session),
             tuned: session
                 .present_tuned()
                 .map(|tuned| TunedCalibration::of(tuned)),
