@@ -35,7 +35,7 @@ impl Movable {
     fn of(parameter: &Parameter, constants: &Constants) -> Option<Self> {
         let sigma = usual_sigma(*parameter);
         let (unit, usual) = match parameter {
-            Parameter::Scalar(scalar) => (scalar.unit, Own::Share(sigma)),
+            Parameter::Scalar(constant, _) => (constant.unit_text(), Own::Share(sigma)),
             Parameter::Threshold(_) => ("A", Own::Value(sigma)),
             Parameter::Flow(..) => ("l/min", Own::Share(sigma)),
             Parameter::Sensor(_) => return None,
