@@ -11,7 +11,7 @@
 //! out; what comes after these is lost at power-off. A count ends at 126, and so does the writing of a code that occurs at
 //! each start. The log is compacted only at the start, if fewer slots are free than these writes need: that takes at least
 //! [`WRITES_PER_ERASE`] entries, and each page is erased every other time. Flash that can be erased 10 000 times (data
-//! sheets of both parts) so takes 1.9 million entries, 17 000 starts with the most writes: more than four a day in ten years.
+//! sheets of both parts) so takes 1.8 million entries, 16 000 starts with the most writes: more than four a day in ten years.
 
 use embedded_storage::nor_flash::NorFlash;
 
