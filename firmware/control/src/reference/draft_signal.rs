@@ -31,9 +31,10 @@ impl DraftSignal {
             self.left.step(inputs.left_pin),
             self.right.step(inputs.right_pin),
         ];
-        let still = match self.in_soil {
-            true => still.into_iter().max().unwrap_or_default(),
-            false => Millisecond::ZERO,
+        let still = if self.in_soil {
+            still.into_iter().max().unwrap_or_default()
+        } else {
+            Millisecond::ZERO
         };
         let forces = forces(inputs, parameters);
         let still = (still, Trouble::PinFrozen);
