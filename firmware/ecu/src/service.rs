@@ -79,6 +79,8 @@ pub fn load<F: NorFlash>(store: &mut CalibrationStore<F>, fitted: Fitted) -> Sta
     }
 }
 
+/// Not inlined: its blocks would take their place on the stack while the store is read.
+#[inline(never)]
 fn factory(nominal: ValidCalibration, fitted: Fitted) -> ValidCalibration {
     let mut calibration: Calibration = (*nominal).clone();
     calibration.monitor(fitted);

@@ -5,7 +5,9 @@ use hitch_field::draft::Texture;
 use hitch_field::soil::{SoilPlan, Stretch};
 use hitch_field::strength::StrengthConstants;
 use hitch_quantities::calibration::field_parameters::DraftParameters;
-use hitch_quantities::units::{Count, MillimetrePerSecond, Newton, PerMille, SupplyShare};
+use hitch_quantities::units::{
+    Count, Micrometre, MillimetrePerSecond, Newton, PerMille, SupplyShare,
+};
 use hitch_quantities::{Calibration, Function, Inputs, Reason, Trouble, ValidCalibration};
 use hitch_workbench::field_loop::pass::{
     Comparison, DRAFT_N, LINK_DEPTH_M, Pass, fitted, fitted_with,
@@ -29,7 +31,7 @@ fn of(function: Function, draft_n: f64) -> Settings {
         function,
         draft_n: Some(draft_n),
         mix: Some(0.5),
-        slip_limit: None,
+        ..Settings::default()
     }
 }
 
@@ -59,6 +61,8 @@ fn add_any(random: &mut fastrand::Rng, inputs: &mut Inputs) {
     inputs.draft_set_point = word(0, 40_000).map(Newton);
     inputs.mix = word(-100, 1_200).map(PerMille);
     inputs.slip_limit = word(-100, 1_200).map(PerMille);
+    inputs.depth_sensor = word(0, 100_000).map(SupplyShare);
+    inputs.depth_set_point = word(-100_000, 500_000).map(Micrometre);
     inputs.function = word(-1, 6).map(Count);
 }
 

@@ -2,6 +2,7 @@
 
 mod closed_loop;
 mod current;
+mod depth;
 mod draft;
 mod drawn_hitches;
 mod drifting_reference;

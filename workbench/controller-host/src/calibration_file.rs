@@ -59,6 +59,7 @@ macro_rules! with_groups {
         $visit(&mut $calibration.current $(, $argument)*)?;
         $visit(&mut $calibration.bus $(, $argument)*)?;
         $visit(&mut $calibration.draft $(, $argument)*)?;
+        $visit(&mut $calibration.depth $(, $argument)*)?;
         $visit(&mut $calibration.slip $(, $argument)*)?;
         $visit(&mut $calibration.ride $(, $argument)*)?;
         $visit(&mut $calibration.work $(, $argument)*)?;

@@ -1,13 +1,13 @@
 //! Samples in engineering units, as the controller's inputs.
 
 use hitch_quantities::units::{
-    Count, MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt,
-    MillimetrePerSecond, Newton, PerMille, RevolutionPerMinute, SupplyShare,
+    Count, Micrometre, MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond,
+    MilliVolt, MillimetrePerSecond, Newton, PerMille, RevolutionPerMinute, SupplyShare,
 };
 use hitch_quantities::{Inputs, Switches};
 
 /// Names of the sampled quantities, each ending in its unit. From [`FIRST_OF_FIELD`] on they are those of draft and slip control.
-pub const QUANTITIES: [&str; 20] = [
+pub const QUANTITIES: [&str; 22] = [
     "lever_deg",
     "rocker_angle_deg",
     "cylinder_pressure_bar",
@@ -28,6 +28,8 @@ pub const QUANTITIES: [&str; 20] = [
     "mix_percent",
     "slip_limit_percent",
     "function_code",
+    "depth_sensor_percent",
+    "depth_set_point_mm",
 ];
 
 /// Index of the first quantity of draft and slip control.
@@ -93,6 +95,8 @@ pub fn inputs(
         mix: scaled(17, 10.0).map(PerMille),
         slip_limit: scaled(18, 10.0).map(PerMille),
         function: scaled(19, 1.0).map(Count),
+        depth_sensor: milli(20).map(SupplyShare),
+        depth_set_point: milli(21).map(Micrometre),
         enable_line_fault: false,
         switches: Switches {
             transport_lock,

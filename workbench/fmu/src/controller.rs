@@ -55,7 +55,9 @@ const ABOUT: [Quantity; QUANTITIES.len()] = [
     ("N", 0.0, "set point of the draft"),
     ("%", 50.0, "mix dial; 0 is position, 100 is draft"),
     ("%", 30.0, "slip limit"),
-    ("", 0.0, "code of the function: 0 position, 1 draft, 2 mix, 3 depth limit"),
+    ("", 0.0, "code of the function: 0 position, 1 draft, 2 mix, 3 depth limit, 4 depth"),
+    ("%", 25.0, "output of the external depth sensor over its supply"),
+    ("mm", 0.0, "set point of the depth"),
 ];
 
 const SWITCHES_ABOUT: [&str; SWITCHES.len()] = [

@@ -31,10 +31,10 @@ const FIELD_HEADER: &str =
     measured_lower_current_a, and the switches transport_lock, hold, quick_lift, teach, consent, up_released, down_released, engage (0 is off). An empty cell \
     is a missing sample. Each line is answered by one line with currents and state. The coils stay off until the lever has \
     been moved through the present angle.\n\n\
-    Optional columns of draft and slip control, for a calibration with draft.fitted = 1: left_draft_pin_percent and \
+    Optional columns of draft, depth and slip control, for a calibration with draft.fitted or depth.fitted = 1: left_draft_pin_percent and \
     right_draft_pin_percent of the supply, ground_speed_m_per_s and wheel_speed_m_per_s (empty where no message was received), \
-    draft_set_point_n, mix_percent, slip_limit_percent, and function_code (0 position, 1 draft, 2 mix, 3 depth limit). With one of \
-    them the answer has target_deg, draft_n, set_point_reason, lost_sensor, in_work (0 or 1, empty without work.angle) and \
+    draft_set_point_n, mix_percent, slip_limit_percent, depth_sensor_percent of the supply, depth_set_point_mm, and function_code \
+    (0 position, 1 draft, 2 mix, 3 depth limit, 4 depth). With one of them the answer has target_deg, draft_n, set_point_reason, lost_sensor, in_work (0 or 1, empty without work.angle) and \
     time_until_work_s (empty while the hitch is not lowered into work) besides.\n\n\
     Teaching is optional. Before the lever capture and away from the ends of travel, set teach to 1 and jog_deg_per_s to any \
     value but 0 (button held, after 20 ms in which it was released): within a minute the controller identifies the opening currents, the valve delays and the ends \

@@ -14,3 +14,4 @@ pub mod rig;
 pub mod scenario;
 pub mod show;
 pub mod transport;
+pub mod undulation;

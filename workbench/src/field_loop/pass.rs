@@ -90,6 +90,8 @@ impl Pass {
     }
 }
 
+/// Working depth of the passes, m.
+pub const DEPTH_M: f64 = 0.25;
 /// Draft at 25 cm in loam, N: set point of the passes.
 pub const DRAFT_N: f64 = 18_200.0;
 
@@ -124,7 +126,7 @@ impl Comparison {
                     function,
                     draft_n: Some(DRAFT_N),
                     mix: Some(0.5),
-                    slip_limit: None,
+                    ..Settings::default()
                 },
                 link_depth_m: LINK_DEPTH_M,
                 work_s: 60.0,

@@ -6,7 +6,9 @@ use hitch_field::soil::SoilPlan;
 use hitch_field::terrain::Terrain;
 use hitch_field::tractor::{Demand, Outputs as Field, Readings, Tractor, TractorConstants};
 use hitch_plant::Model;
-use hitch_quantities::units::{Count, MillimetrePerSecond, Newton, PerMille, SupplyShare};
+use hitch_quantities::units::{
+    Count, Micrometre, MillimetrePerSecond, Newton, PerMille, SupplyShare,
+};
 use hitch_quantities::{Function, Inputs, ValidCalibration};
 
 use super::coupling::Coupling;
@@ -15,7 +17,13 @@ use super::coupling::Coupling;
 pub const TOUCH_DEG: f64 = 95.0;
 /// Rocker angle of the raised hitch at the start, degree.
 pub const RAISED_DEG: f64 = 125.0;
-/// Step of a 12-bit converter that measures a pin over its supply, thousandths of a percent.
+/// Output of the depth sensor over its supply at the ground, 1: `depth.zero` of a new machine.
+const DEPTH_ZERO: f64 = 0.25;
+/// Depth that adds the whole supply to it, m: four times `depth.span` of a new machine.
+const DEPTH_SUPPLY_M: f64 = 0.8;
+/// Outputs at the stops of its arm, 1: it hangs on one of them while the implement is raised.
+const DEPTH_STOPS: [f64; 2] = [0.12, 0.88];
+/// Step of a 12-bit converter that measures a sensor over its supply, thousandths of a percent.
 const CONVERTER_STEP: f64 = 1e5 / 4096.0;
 /// Period in which the bus tells the speeds, ms.
 const BUS_PERIOD_MS: u64 = 100;
@@ -28,6 +36,8 @@ pub struct Settings {
     pub function: Function,
     /// Set point of the draft, N.
     pub draft_n: Option<f64>,
+    /// Set point of the depth, m.
+    pub depth_m: Option<f64>,
     /// Mix dial, 0 to 1.
     pub mix: Option<f64>,
     /// Slip limit, 0 to 1.
@@ -131,12 +141,15 @@ impl<'m> FieldRig<'m> {
 }
 
 fn add_readings(inputs: &mut Inputs, readings: &Readings, is_told: bool) {
-    let pin = |share: f64| {
+    let output = |share: f64| {
         let read = (share * 1e5 / CONVERTER_STEP).round() * CONVERTER_STEP;
         Some(SupplyShare(read.round() as i32))
     };
-    inputs.left_pin = pin(readings.pins.left);
-    inputs.right_pin = pin(readings.pins.right);
+    inputs.left_pin = output(readings.pins.left);
+    inputs.right_pin = output(readings.pins.right);
+    let depth = DEPTH_ZERO + readings.depth_m / DEPTH_SUPPLY_M;
+    let [up, down] = DEPTH_STOPS;
+    inputs.depth_sensor = output(depth.clamp(up, down));
     let speed =
         |m_s: f64| is_told.then_some(MillimetrePerSecond((m_s.max(0.0) * 1e3).round() as i32));
     inputs.ground_speed = speed(readings.ground_speed_m_s);
@@ -147,6 +160,9 @@ fn add_settings(inputs: &mut Inputs, settings: &Settings) {
     let share = |part: f64| PerMille((part * 1e3).round() as i32);
     inputs.function = Some(Count(settings.function as i32));
     inputs.draft_set_point = settings.draft_n.map(|force| Newton(force.round() as i32));
+    inputs.depth_set_point = settings
+        .depth_m
+        .map(|depth_m| Micrometre((depth_m * 1e6).round() as i32));
     inputs.mix = settings.mix.map(share);
     inputs.slip_limit = settings.slip_limit.map(share);
 }

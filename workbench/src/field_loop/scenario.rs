@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use hitch_field::body::BodyConstants;
 use hitch_field::draft::Texture;
 use hitch_field::soil::{SoilPlan, Stretch};
-use hitch_field::terrain::{Terrain, Undulation};
+use hitch_field::terrain::Terrain;
 use hitch_field::tractor::{Outputs as Field, TractorConstants};
 use hitch_plant::Model;
 use hitch_quantities::units::{Count, PerMille};
@@ -15,10 +15,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::coupling::Coupling;
-use super::figures::{Spread, activations};
-use super::pass::{Comparison, DRAFT_N, LINK_DEPTH_M, Pass, SPEED_M_S};
+use super::figures::Spread;
+use super::pass::{Comparison, DEPTH_M, DRAFT_N, LINK_DEPTH_M, Pass, SPEED_M_S};
 use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings, TOUCH_DEG};
 use super::transport::{Ride, RideComparison, class_c};
+use super::undulation::{self, DepthFigures};
 use hitch_closed_loop::Sample;
 
 /// Number of seeds of soil and noise over which figures are means.
@@ -35,7 +36,7 @@ pub enum FieldScenario {
     Mix,
     /// Slip guard on a soft patch of 20 m
     Slip,
-    /// Depth limit over an undulation of 10 m and 100 mm
+    /// Depth limit over an undulation of 10 m and 100 mm, and depth control if a sensor is fitted
     Depth,
     /// Ride damping with 600 kg on rough roads
     Transport,
@@ -140,8 +141,9 @@ fn settings(function: Function) -> Settings {
     Settings {
         function,
         draft_n: Some(DRAFT_N),
+        depth_m: Some(DEPTH_M),
         mix: Some(0.5),
-        slip_limit: None,
+        ..Settings::default()
     }
 }
 
@@ -312,51 +314,78 @@ fn driven(
 }
 
 fn depth(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> FieldRun {
-    const SPEED: f64 = 2.7;
-    const WORKS_FROM: usize = 25_000;
-    let terrain = Terrain::flat().with_undulation(Undulation {
-        wavelength_m: 10.0,
-        amplitude_m: 0.05,
-    });
-    let samples = driven(
+    let limited = undulation::drive(
         model,
         calibration,
-        (SoilPlan::varying(Texture::Medium), terrain),
-        (settings(Function::DepthLimit), SPEED),
-        (85.0, first_seed),
-        |coupling, samples| match samples.len() {
-            ..10_000 => RAISED_DEG,
-            _ => coupling.angle_deg(LINK_DEPTH_M),
-        },
+        &settings(Function::DepthLimit),
+        first_seed,
+        |_, _| {},
     );
-    let (_, work) = samples.split_at(WORKS_FROM);
-    let depths = work.iter().map(|sample| sample.field.depth_m);
-    let share = |of: &dyn Fn(f64) -> bool| {
-        depths.clone().filter(|depth_m| of(*depth_m)).count() as f64 / work.len() as f64 * 100.0
-    };
-    let mean_m = Spread::of(depths.clone()).mean;
-    let figures = vec![
+    let found = DepthFigures::of(&limited);
+    let mut figures = vec![
+        FieldFigure::new("out of the ground", found.out * 100.0, "%", Some(0.0)),
         FieldFigure::new(
-            "out of the ground",
-            share(&|depth_m| depth_m <= 0.0),
+            "depth further than 10 % from its mean",
+            found.beyond * 100.0,
+            "%",
+            Some(5.0),
+        ),
+        FieldFigure::new("mean depth", found.depth_m.mean * 100.0, "cm", None),
+        FieldFigure::new("coil activations", found.activations_per_min, "1/min", None),
+    ];
+    let course = if calibration.depth.fitted == Count(0) {
+        limited
+    } else {
+        let settings = settings(Function::Depth);
+        let sensed = undulation::drive(model, calibration, &settings, first_seed, |_, _| {});
+        let lever = undulation::drive(
+            model,
+            calibration,
+            &Settings::default(),
+            first_seed,
+            |_, _| {},
+        );
+        figures.extend(of_sensor(&sensed, &lever));
+        sensed
+    };
+    FieldRun::of(figures, &course[..course.len().min(30_000)])
+}
+
+/// Figures of depth control with the external sensor, and of position control on the same way.
+fn of_sensor(sensed: &[FieldSample], lever: &[FieldSample]) -> [FieldFigure; 5] {
+    let [sensed, lever] = [sensed, lever].map(DepthFigures::of);
+    [
+        FieldFigure::new(
+            "depth sensor: out of the ground",
+            sensed.out * 100.0,
             "%",
             Some(0.0),
         ),
         FieldFigure::new(
-            "depth further than 10 % from its mean",
-            share(&|depth_m| (depth_m / mean_m - 1.0).abs() > 0.1),
+            "depth sensor: depth further than 10 % from its mean",
+            sensed.beyond * 100.0,
             "%",
             Some(5.0),
         ),
-        FieldFigure::new("mean depth", mean_m * 100.0, "cm", None),
         FieldFigure::new(
-            "coil activations",
-            activations(work) as f64 / (work.len() as f64 / 60e3),
+            "depth sensor: mean depth",
+            sensed.depth_m.mean * 100.0,
+            "cm",
+            None,
+        ),
+        FieldFigure::new(
+            "depth sensor: deviation of the depth over that of position control",
+            sensed.depth_m.deviation / lever.depth_m.deviation,
+            "",
+            None,
+        ),
+        FieldFigure::new(
+            "depth sensor: coil activations",
+            sensed.activations_per_min,
             "1/min",
             None,
         ),
-    ];
-    FieldRun::of(figures, &work[..work.len().min(30_000)])
+    ]
 }
 
 fn headland(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> FieldRun {

@@ -1,7 +1,4 @@
 //! From the outputs of two draft pins to the draft, with the plausibility of the pins.
-//!
-//! A sample that may be wrong is not used: the draft is [`Draft::Suspect`] until the pins are plausible again or have been
-//! implausible for `check_time`. The pins are lost then, until they have been plausible for `healthy_time`.
 
 use hitch_quantities::calibration::field_parameters::DraftParameters;
 use hitch_quantities::fixed::{Divisor, mul_div};
@@ -9,20 +6,13 @@ use hitch_quantities::units::{MilliHertz, Millisecond, Newton, SupplyShare};
 use hitch_quantities::{Inputs, Trouble};
 
 use super::low_pass::LowPass;
+use super::plausibility::{Plausibility, Signal, Still};
 
 /// A quarter of the supply: the swing of a pin at its span.
 const QUARTER: Divisor = Divisor::at_least_one(25_000);
 
 /// The draft of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Draft {
-    /// Filtered draft.
-    Measured(Newton),
-    /// The pins are implausible, but not for long enough to be lost.
-    Suspect,
-    /// The pins are lost.
-    Lost(Trouble),
-}
+pub type Draft = Signal<Newton>;
 
 /// Draft pins from step to step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,9 +20,7 @@ pub struct DraftSignal {
     filter: LowPass,
     left: Still,
     right: Still,
-    implausible_for: Millisecond,
-    healthy_for: Millisecond,
-    lost: Option<Trouble>,
+    plausibility: Plausibility,
     in_soil: bool,
 }
 
@@ -43,16 +31,16 @@ impl DraftSignal {
             self.left.step(inputs.left_pin),
             self.right.step(inputs.right_pin),
         ];
-        let still = still.into_iter().max().unwrap_or_default();
-        match forces(inputs, parameters) {
-            Ok(draft) if !self.in_soil || still < parameters.still_time => {
-                self.plausible(draft, moves, parameters)
-            }
-            Ok(_) => self.implausible(Trouble::PinFrozen, still >= parameters.frozen_time),
-            Err(trouble) => {
-                self.implausible_for = self.implausible_for.next().min(parameters.check_time);
-                self.implausible(trouble, self.implausible_for >= parameters.check_time)
-            }
+        let still = if self.in_soil {
+            still.into_iter().max().unwrap_or_default()
+        } else {
+            Millisecond::ZERO
+        };
+        let forces = forces(inputs, parameters);
+        let still = (still, Trouble::PinFrozen);
+        match self.plausibility.step(forces, still, parameters) {
+            Ok((draft, is_first)) => self.plausible(draft, is_first, moves, parameters),
+            Err(signal) => signal,
         }
     }
 
@@ -62,14 +50,14 @@ impl DraftSignal {
         self.in_soil
     }
 
-    fn plausible(&mut self, draft: Newton, moves: bool, parameters: &DraftParameters) -> Draft {
-        self.implausible_for = Millisecond::ZERO;
-        if let Some(trouble) = self.lost {
-            self.healthy_for = self.healthy_for.next();
-            if self.healthy_for < parameters.healthy_time {
-                return Draft::Lost(trouble);
-            }
-            self.lost = None;
+    fn plausible(
+        &mut self,
+        draft: Newton,
+        is_first: bool,
+        moves: bool,
+        parameters: &DraftParameters,
+    ) -> Draft {
+        if is_first {
             self.filter.reset();
         }
         let filtered = Newton(self.filter.step(draft.0, self.corner(moves, parameters)));
@@ -79,14 +67,6 @@ impl DraftSignal {
             filtered + filtered > parameters.soil_draft
         };
         Draft::Measured(filtered)
-    }
-
-    fn implausible(&mut self, trouble: Trouble, for_long: bool) -> Draft {
-        self.healthy_for = Millisecond::ZERO;
-        if for_long && self.lost.is_none() {
-            self.lost = Some(trouble);
-        }
-        self.lost.map_or(Draft::Suspect, Draft::Lost)
     }
 
     const fn corner(&self, moves: bool, parameters: &DraftParameters) -> MilliHertz {
@@ -121,25 +101,6 @@ fn forces(inputs: &Inputs, parameters: &DraftParameters) -> Result<Newton, Troub
         Err(Trouble::PinsDisagree)
     } else {
         Ok(draft)
-    }
-}
-
-/// For how long a sample has been the same.
-#[derive(Clone, Copy, Debug, Default)]
-struct Still {
-    last: Option<SupplyShare>,
-    since: Millisecond,
-}
-
-impl Still {
-    fn step(&mut self, sample: Option<SupplyShare>) -> Millisecond {
-        self.since = if sample == self.last {
-            self.since.next()
-        } else {
-            Millisecond::ZERO
-        };
-        self.last = sample;
-        self.since
     }
 }
 

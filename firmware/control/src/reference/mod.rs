@@ -1,65 +1,61 @@
-//! The reference of position control: the lever, or what draft, mix, depth limit and slip guard make of it.
+//! The reference of position control: the lever, or what draft, mix, depth limit, depth and slip guard make of it.
 //!
 //! ```text
-//! pins -> draft signal -> draft loop --+--> selector -> limits -> slip guard -> valve speeds -> set point
-//! lever -------------------------------+                              ^
-//! speeds -> slip signal ----------------------------------------------+
+//! pins -> draft signal ---------+-> loop -+--> selector -> limits -> slip guard -> valve speeds -> set point
+//! depth sensor -> depth signal -+         |                              ^
+//! lever ----------------------------------+                              |
+//! speeds -> slip signal -------------------------------------------------+
 //! ```
 //!
-//! It moves the set point of the position law, slowly, and changes nothing below it. Without draft pins, or with an
+//! It moves the set point of the position law, slowly, and changes nothing below it. Without sensors, or with an
 //! implement or quick lift in command, the lever passes unchanged.
 //!
 //! The lever stays the operator's in each function: it is the lowest position (depth limit), or at most `draft.margin` above
-//! it. So a raised lever takes the implement out of the soil, and above the ground the lever is the set point.
+//! it; the depth moves the hitch by at most `depth.margin` from it. So a raised lever takes the implement out of the soil, and above the ground the lever is the set point.
 
-pub mod draft_loop;
+pub mod depth_signal;
 pub mod draft_signal;
+pub mod function_loop;
 pub mod hold;
 pub mod in_work;
 pub mod lag_loop;
+pub mod limits;
 pub mod low_pass;
+pub mod plausibility;
 pub mod received;
 pub mod selector;
+pub mod situation;
 pub mod slip_guard;
 pub mod slip_signal;
 
 use hitch_quantities::fixed::Divisor;
-use hitch_quantities::units::{
-    MicrometrePerSecond, MilliDegree, MilliDegreePerSecond, MilliHertz, Newton, PerMille,
-};
+use hitch_quantities::units::{Micrometre, MilliDegree, MilliHertz, Millisecond, Newton, PerMille};
 use hitch_quantities::{Calibration, Function, Inputs, Reason, Trouble};
 
-use draft_loop::Errors;
+use depth_signal::DepthSignal;
 use draft_signal::{Draft, DraftSignal};
+use function_loop::Errors;
 use lag_loop::Gains;
+use limits::{deepest, highest, lowest, reachable};
+use plausibility::Signal;
 use selector::{Active, Choice};
 use slip_guard::SlipGuard;
 use slip_signal::SlipSignal;
 
 use crate::operator::engage::Engagement;
 
+pub use situation::Situation;
+
 /// Weight of the draft without a mix dial.
 const MIDDLE: PerMille = PerMille(500);
-
-/// What the reference depends on besides inputs and calibration.
-#[derive(Clone, Copy, Debug)]
-pub struct Situation {
-    /// Lever, without its noise.
-    pub lever: MilliDegree,
-    /// Switch of quick engagement.
-    pub engagement: Engagement,
-    /// Rocker angle.
-    pub angle: MilliDegree,
-    /// Upper limit of the set point.
-    pub highest: MilliDegree,
-    /// Largest piston speed of lift and lowering valve.
-    pub valve_speeds: [MicrometrePerSecond; 2],
-}
 
 /// The reference from step to step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReferenceControl {
     draft: DraftSignal,
+    depth: DepthSignal,
+    /// For how long the hitch has rested.
+    rested_for: Millisecond,
     slip: SlipSignal,
     sensed: Sensed,
     active: Active,
@@ -75,6 +71,7 @@ pub struct ReferenceControl {
 #[derive(Clone, Copy, Debug)]
 struct Sensed {
     draft: Draft,
+    depth: Signal<Micrometre>,
     /// The last measured draft; `None` while the pins are lost.
     measured: Option<Newton>,
     /// Slip and its limit; `None` where it is not limited.
@@ -85,6 +82,7 @@ impl Default for Sensed {
     fn default() -> Self {
         Self {
             draft: Draft::Suspect,
+            depth: Signal::Suspect,
             measured: None,
             slip: Ok(None),
         }
@@ -95,7 +93,7 @@ impl ReferenceControl {
     /// Whether the machine has what the reference needs.
     #[must_use]
     pub const fn is_fitted(calibration: &Calibration) -> bool {
-        calibration.draft.fitted.0 != 0
+        has_pins(calibration) || has_depth(calibration)
     }
 
     /// Another set point is in command, or position control has ended: the lever begins anew.
@@ -118,13 +116,12 @@ impl ReferenceControl {
         matches!(self.active, Active::Engages(_))
     }
 
-    /// The lost sensor; a pin before a speed.
+    /// The lost sensor; a pin before the depth sensor, and that before a speed.
     #[must_use]
     pub fn trouble(&self) -> Option<Trouble> {
-        match self.sensed.draft {
-            Draft::Lost(trouble) => Some(trouble),
-            _ => self.sensed.slip.err(),
-        }
+        let Sensed { draft, depth, .. } = self.sensed;
+        let trouble = draft.trouble().or(depth.trouble());
+        trouble.or(self.sensed.slip.err())
     }
 
     /// The draft; `None` while the pins are lost.
@@ -133,21 +130,38 @@ impl ReferenceControl {
         self.sensed.measured
     }
 
-    /// Whether the draft says that the implement is in the soil; `None` without plausible pins.
+    /// Whether the draft, or the depth without it, says that the implement is in the soil; `None` without a plausible sensor.
     #[must_use]
     pub fn in_soil(&self) -> Option<bool> {
-        match self.sensed.draft {
-            Draft::Measured(_) => Some(self.draft.is_in_soil()),
-            Draft::Suspect | Draft::Lost(_) => None,
+        match (self.sensed.draft, self.sensed.depth) {
+            (Signal::Measured(_), _) => Some(self.draft.is_in_soil()),
+            (_, Signal::Measured(_)) => Some(self.depth.is_in_soil()),
+            _ => None,
         }
     }
 
     /// One millisecond of the sensors, in any mode: what determines the set point must not keep them from being filtered and
     /// monitored. `moves`: the hitch moves.
     pub fn sense(&mut self, inputs: &Inputs, moves: bool, calibration: &Calibration) {
-        let draft = self.draft.step(inputs, moves, &calibration.draft);
+        let draft = if has_pins(calibration) {
+            self.draft.step(inputs, moves, &calibration.draft)
+        } else {
+            Draft::Suspect
+        };
+        let depth = if has_depth(calibration) {
+            let (pins, depth) = (&calibration.draft, &calibration.depth);
+            self.depth.step(inputs, pins, depth)
+        } else {
+            Signal::Suspect
+        };
+        self.rested_for = if moves {
+            Millisecond::ZERO
+        } else {
+            self.rested_for.next()
+        };
         self.sensed = Sensed {
             draft,
+            depth,
             measured: match draft {
                 Draft::Measured(draft) => Some(draft),
                 Draft::Suspect => self.sensed.measured,
@@ -164,7 +178,7 @@ impl ReferenceControl {
         situation: &Situation,
         calibration: &Calibration,
     ) -> MilliDegree {
-        let Sensed { draft, slip, .. } = self.sensed;
+        let slip = self.sensed.slip;
         // Quick engagement begins where the hitch is, which quick lift may have raised above the lever.
         let begins = situation.engagement == Engagement::Begins;
         let lever_or_hitch = if begins {
@@ -174,16 +188,33 @@ impl ReferenceControl {
         };
         let present = self.used.unwrap_or(lever_or_hitch);
         let mix = mix(inputs);
-        let gains = self.gains(calibration.draft.crossover, calibration);
-        let errors = errors(draft, present, mix, inputs, situation, calibration);
-        let has_draft = self.has_draft(inputs.draft_set_point, calibration);
+        let function = selected(inputs, calibration);
+        let is_depth = function == Function::Depth;
+        let (crossover, trouble, in_soil) = if is_depth {
+            let trouble = self.sensed.depth.trouble();
+            let in_soil = self.depth.is_in_soil();
+            (calibration.depth.crossover, trouble, in_soil)
+        } else {
+            let trouble = self.sensed.draft.trouble();
+            let in_soil = self.draft.is_in_soil();
+            (calibration.draft.crossover, trouble, in_soil)
+        };
+        let gains = self.gains(crossover, calibration);
+        let errors = if is_depth {
+            depth_errors(self.sensed.depth, inputs, calibration)
+        } else {
+            let draft = self.sensed.draft;
+            errors(draft, present, mix, inputs, situation, calibration)
+        };
+        let is_reached = self.is_reached(is_depth, inputs, calibration);
         let choice = Choice {
-            function: selected(inputs),
+            function,
             errors,
-            has_draft,
+            is_reached,
             engagement: situation.engagement,
-            lost: matches!(draft, Draft::Lost(_)),
-            in_soil: self.draft.is_in_soil(),
+            lost: trouble.is_some(),
+            in_soil,
+            has_rested: !is_depth || self.rested_for >= calibration.depth.rest_time,
             lever: situation.lever,
             angle: situation.angle,
             present,
@@ -212,18 +243,19 @@ impl ReferenceControl {
             (Active::Lever, _) => (None, situation.lever),
             (Active::Holds(hold), _) => (None, hold.set_point()),
             (Active::Engages(_), errors) => (None, deepest(choice, errors, calibration)),
-            // The pins are in doubt: a move ends.
-            (Active::Draft(function, _), None) => (Some(function), choice.here()),
-            (Active::Draft(function, control), Some(errors)) => {
+            // The sensors are in doubt: a move ends.
+            (Active::Function(function, _), None) => (Some(function), choice.here()),
+            (Active::Function(function, control), Some(errors)) => {
                 (Some(function), control.demand(errors, gains))
             }
         };
         let lowest = lowest(function, situation.lever, calibration);
+        let highest = highest(function, situation, calibration);
         let limited = match function {
-            Some(_) => demand.limited(lowest, situation.highest),
+            Some(_) => demand.limited(lowest, highest),
             None => demand,
         };
-        let slip = slip.filter(|_| choice.in_soil);
+        let slip = slip.filter(|_| self.draft.is_in_soil());
         let slip_gains = self.gains(calibration.slip.crossover, calibration);
         let raised = self
             .guard
@@ -235,13 +267,14 @@ impl ReferenceControl {
             return situation.lever;
         }
         let used = reachable(choice.present, raised, situation, calibration);
-        if let (Active::Draft(_, control), Some(errors)) = (&mut self.active, choice.errors) {
+        if let (Active::Function(_, control), Some(errors)) = (&mut self.active, choice.errors) {
             control.follow(errors, gains, demand, used);
         }
         let step = match self.active {
             Active::Engages(_) => MilliDegree::ZERO,
-            Active::Draft(..) if choice.errors.is_none() => MilliDegree::ZERO,
+            Active::Function(..) if choice.errors.is_none() => MilliDegree::ZERO,
             Active::Holds(_) if self.reason != Some(Reason::Slip) => MilliDegree::ZERO,
+            Active::Function(Function::Depth, _) => calibration.depth.step,
             _ => calibration.draft.step.scaled(weight.0, Divisor::THOUSAND),
         };
         self.in_steps(used, step)
@@ -264,7 +297,7 @@ impl ReferenceControl {
         calibration: &Calibration,
     ) -> Result<Option<(PerMille, PerMille)>, Trouble> {
         let parameters = &calibration.slip;
-        if parameters.highest_limit == PerMille::ZERO {
+        if parameters.highest_limit == PerMille::ZERO || !has_pins(calibration) {
             return Ok(None);
         }
         let limit = inputs.slip_limit.unwrap_or(parameters.highest_limit);
@@ -275,19 +308,28 @@ impl ReferenceControl {
         Ok(slip.map(|slip| (slip, limit)))
     }
 
-    /// Whether the draft will have reached its set point once the implement has followed the links; during quick engagement.
-    fn has_draft(&mut self, set_point: Option<Newton>, calibration: &Calibration) -> bool {
+    /// Whether draft or depth will have reached the set point once the implement has followed the links; during quick
+    /// engagement.
+    fn is_reached(&mut self, is_depth: bool, inputs: &Inputs, calibration: &Calibration) -> bool {
         let corner = calibration.draft.raised_filter;
         let gains = self.gains(corner, calibration);
-        let (Active::Engages(filter), Draft::Measured(draft), Some(set_point)) =
-            (&mut self.active, self.sensed.draft, set_point)
+        let (quantity, wanted) = if is_depth {
+            let wanted = inputs.depth_set_point;
+            let least = wanted.map(|wanted| (wanted - calibration.depth.dead_band).0);
+            (self.sensed.depth.measured().map(|depth| depth.0), least)
+        } else {
+            let share = (PerMille::WHOLE - calibration.draft.dead_band).0;
+            let wanted = inputs.draft_set_point;
+            let least = wanted.map(|wanted| wanted.scaled(share, Divisor::THOUSAND).0);
+            (self.sensed.draft.measured().map(|draft| draft.0), least)
+        };
+        let (Active::Engages(filter), Some(quantity), Some(wanted)) =
+            (&mut self.active, quantity, wanted)
         else {
             return false;
         };
-        let slow = filter.step(draft.0, corner);
-        let ahead = Newton(gains.ahead(draft.0, slow));
-        let band = set_point.scaled(calibration.draft.dead_band.0, Divisor::THOUSAND);
-        ahead >= set_point - band
+        let slow = filter.step(quantity, corner);
+        gains.ahead(quantity, slow) >= wanted
     }
 
     fn gains(&self, crossover: MilliHertz, calibration: &Calibration) -> Gains {
@@ -314,17 +356,35 @@ impl ReferenceControl {
             (Some(Function::Draft), _) => Some(Reason::Draft),
             (Some(Function::Mix), _) => Some(Reason::Mix),
             (Some(Function::DepthLimit), _) => Some(Reason::DepthLimit),
+            (Some(Function::Depth), _) => Some(Reason::Depth),
             _ if choice.function != Function::Position => Some(Reason::AboveGround),
             _ => None,
         }
     }
 }
 
-/// The selected function; position control without a set point of the draft.
-fn selected(inputs: &Inputs) -> Function {
-    match inputs.draft_set_point {
-        Some(_) => Function::from_code(inputs.function),
-        None => Function::Position,
+const fn has_pins(calibration: &Calibration) -> bool {
+    calibration.draft.fitted.0 != 0
+}
+
+const fn has_depth(calibration: &Calibration) -> bool {
+    calibration.depth.fitted.0 != 0
+}
+
+/// The selected function; position control without its sensor or its set point.
+fn selected(inputs: &Inputs, calibration: &Calibration) -> Function {
+    let function = Function::from_code(inputs.function);
+    let is_possible = match function {
+        Function::Position => true,
+        Function::Depth => has_depth(calibration) && inputs.depth_set_point.is_some(),
+        Function::Draft | Function::Mix | Function::DepthLimit => {
+            has_pins(calibration) && inputs.draft_set_point.is_some()
+        }
+    };
+    if is_possible {
+        function
+    } else {
+        Function::Position
     }
 }
 
@@ -358,46 +418,13 @@ fn errors(
     ))
 }
 
-/// The lowest set point of a function.
-fn lowest(
-    function: Option<Function>,
-    lever: MilliDegree,
+/// The errors of a measured depth.
+fn depth_errors(
+    depth: Signal<Micrometre>,
+    inputs: &Inputs,
     calibration: &Calibration,
-) -> MilliDegree {
-    let floor = match function {
-        Some(Function::DepthLimit) => lever,
-        _ => lever - calibration.draft.margin,
-    };
-    floor.max(calibration.position.lower_limit)
-}
-
-/// Where quick engagement lowers to: as deep as the selected function may, and without one to the lower limit. It stays where it
-/// is while the pins are in doubt.
-fn deepest(choice: &Choice, errors: Option<Errors>, calibration: &Calibration) -> MilliDegree {
-    match (choice.function, errors) {
-        (Function::Position, _) => calibration.position.lower_limit,
-        (_, None) => choice.present,
-        (function, Some(_)) => {
-            lowest(Some(function), choice.lever, calibration).min(choice.present)
-        }
-    }
-}
-
-/// The set point `wanted`, no further from the present one than the valves move the hitch in a step.
-fn reachable(
-    present: MilliDegree,
-    wanted: MilliDegree,
-    situation: &Situation,
-    calibration: &Calibration,
-) -> MilliDegree {
-    let one_degree = MilliDegreePerSecond(1_000);
-    let per_degree = calibration
-        .linkage
-        .piston_speed(situation.angle, one_degree);
-    let per_degree = Divisor::at_least_one(per_degree.0);
-    // Degrees in a second are millidegrees in a millisecond.
-    let [up, down] = situation
-        .valve_speeds
-        .map(|speed| MilliDegree(per_degree.divide(speed.0)));
-    wanted.limited(present - down, present + up)
+) -> Option<Errors> {
+    let set_point = inputs.depth_set_point?;
+    let depth = depth.measured()?;
+    Some(Errors::of_depth(depth, set_point, &calibration.depth))
 }

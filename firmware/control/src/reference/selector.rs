@@ -1,26 +1,27 @@
 //! Selection of the function that determines the set point, each change of it without a step.
 //!
 //! ```text
-//!             in the soil, pins plausible             function switched off, or pins lost
-//! +-------+ ------------------------------> +-------+ -----------------------------------> +-------+
-//! | Lever |                                 | Draft |                                      | Holds |
-//! +-------+ <------------------------------ +-------+                                      +-------+
+//!           in the soil, sensors plausible            function switched off, or sensor lost
+//! +-------+ ---------------------------> +----------+ -----------------------------------> +-------+
+//! | Lever |                              | Function |                                      | Holds |
+//! +-------+ <--------------------------- +----------+                                      +-------+
 //!   ^         above the ground                                                                |
 //!   +-----------------------------------------------------------------------------------------+
 //!                                           lever takes over
 //! ```
 //!
-//! The draft loop begins at the present set point, and begins there anew when another function of the draft is selected.
+//! The loop of a function begins at the present set point, and begins there anew when another function is selected. That of the
+//! depth takes over from the lever once the hitch has rested.
 //!
-//! Quick engagement begins in any of them. It lowers the set point until the draft is there, ahead of the implement's lag, and
-//! hands over to the function of the draft; with its release it hands over to that function in the soil, and otherwise to the
+//! Quick engagement begins in any of them. It lowers the set point until draft or depth are there, ahead of the implement's lag, and
+//! hands over to the function; with its release it hands over to that function in the soil, and otherwise to the
 //! lever.
 
 use hitch_quantities::Function;
 use hitch_quantities::calibration::design_parameters::LockParameters;
 use hitch_quantities::units::MilliDegree;
 
-use super::draft_loop::{DraftLoop, Errors};
+use super::function_loop::{Errors, FunctionLoop};
 use super::hold::Hold;
 use super::lag_loop::Gains;
 use super::low_pass::LowPass;
@@ -35,11 +36,11 @@ pub enum Active {
     /// The lever.
     #[default]
     Lever,
-    /// A function of the draft.
-    Draft(Function, DraftLoop),
+    /// A function of draft or depth.
+    Function(Function, FunctionLoop),
     /// The depth at the end of a function.
     Holds(Hold),
-    /// Quick engagement, with a low-pass on the draft.
+    /// Quick engagement, with a low-pass on draft or depth.
     Engages(LowPass),
 }
 
@@ -48,16 +49,18 @@ pub enum Active {
 pub struct Choice {
     /// Selected function; [`Function::Position`] as well if it lacks a set point.
     pub function: Function,
-    /// Errors of the draft, while the pins are plausible.
+    /// Errors of draft or depth, while the sensors of the function are plausible.
     pub errors: Option<Errors>,
-    /// The draft will have reached its set point once the implement has followed the links.
-    pub has_draft: bool,
+    /// Draft or depth will have reached the set point once the implement has followed the links.
+    pub is_reached: bool,
     /// Switch of quick engagement.
     pub engagement: Engagement,
-    /// The pins are lost.
+    /// A sensor of the function is lost.
     pub lost: bool,
-    /// The implement is in the soil.
+    /// The implement is in the soil, by the sensor of the function.
     pub in_soil: bool,
+    /// The hitch has rested for as long as the function requires.
+    pub has_rested: bool,
     /// Lever.
     pub lever: MilliDegree,
     /// Rocker angle.
@@ -72,19 +75,21 @@ impl Active {
     /// One step.
     #[must_use]
     pub fn next(self, choice: &Choice, gains: Gains, lock: &LockParameters) -> Self {
-        let is_draft = choice.function != Function::Position;
+        let is_function = choice.function != Function::Position;
         if choice.engagement == Engagement::Begins {
             return Self::Engages(LowPass::default());
         }
         match self {
-            Self::Engages(_) => choice.engaged(self, is_draft, gains),
+            Self::Engages(_) => choice.engaged(self, is_function, gains),
             Self::Lever => match choice.errors {
-                Some(errors) if is_draft && choice.in_soil => choice.begun(errors, gains),
+                Some(errors) if is_function && choice.in_soil && choice.has_rested => {
+                    choice.begun(errors, gains)
+                }
                 _ => self,
             },
-            Self::Draft(..) if !is_draft || choice.lost => choice.held(),
-            Self::Draft(..) if !choice.in_soil => Self::Lever,
-            Self::Draft(function, _) => match choice.errors {
+            Self::Function(..) if !is_function || choice.lost => choice.held(),
+            Self::Function(..) if !choice.in_soil => Self::Lever,
+            Self::Function(function, _) => match choice.errors {
                 Some(errors) if function != choice.function => choice.begun(errors, gains),
                 _ => self,
             },
@@ -101,28 +106,31 @@ impl Active {
 
 impl Choice {
     /// One step of quick engagement.
-    fn engaged(&self, present: Active, is_draft: bool, gains: Gains) -> Active {
+    fn engaged(&self, present: Active, is_function: bool, gains: Gains) -> Active {
         let is_held = self.engagement == Engagement::Held;
         match self.errors {
-            _ if is_draft && self.lost => self.held(),
-            Some(errors) if is_draft && self.takes_over(is_held) => self.begun(errors, gains),
+            _ if is_function && self.lost => self.held(),
+            Some(errors) if is_function && self.takes_over(is_held) => self.begun(errors, gains),
             _ if is_held => present,
             _ => Active::Lever,
         }
     }
 
-    /// Whether the function of the draft takes over.
+    /// Whether the function takes over.
     const fn takes_over(&self, is_held: bool) -> bool {
         if is_held {
-            self.in_soil && self.has_draft
+            self.in_soil && self.is_reached
         } else {
             self.in_soil
         }
     }
 
-    /// The selected function of the draft, from the present set point on.
+    /// The selected function, from the present set point on.
     fn begun(&self, errors: Errors, gains: Gains) -> Active {
-        Active::Draft(self.function, DraftLoop::from(self.present, errors, gains))
+        Active::Function(
+            self.function,
+            FunctionLoop::from(self.present, errors, gains),
+        )
     }
 
     /// The present depth, from now on.

@@ -53,6 +53,8 @@ const IMAGE: u32 = OWN + 19;
 const SPEEDS: u32 = OWN + 20;
 /// Ride damping.
 const RIDE: u32 = OWN + 21;
+/// External depth sensor.
+const DEPTH: u32 = OWN + 22;
 /// J1939 network 1, the primary vehicle network.
 const NETWORK: u32 = 639;
 /// Sensor supply voltage 1.
@@ -183,6 +185,12 @@ troubles! {
     WheelSpeedLost = WHEEL_SPEED / 9,
     /// One of the speeds of the slip guard stands still while the other one changes.
     SpeedFrozen = SPEEDS / 2,
+    /// The external depth sensor: missing, out of range.
+    DepthSensorMissing = DEPTH / 31,
+    /// The external depth sensor stands still while the implement works.
+    DepthSensorFrozen = DEPTH / 9,
+    /// The external depth sensor is too noisy.
+    DepthSensorNoisy = DEPTH / 2,
     /// A current of ride damping beyond its travel band, without its ground speed, or with the operator at the controls.
     Ride = RIDE / 31,
 }

@@ -43,7 +43,7 @@ impl TroubleFinder {
             .union(self.buttons.update(inputs, operator))
     }
 
-    /// Lost sensors of draft and slip control.
+    /// Lost sensors of draft, depth and slip control.
     fn of_field(&mut self, trouble: Option<field::Trouble>) -> Troubles {
         let is_lost = self.speeds.is_lost(trouble);
         let found = trouble.and_then(|trouble| match trouble {
@@ -53,6 +53,9 @@ impl TroubleFinder {
             field::Trouble::GroundSpeed => is_lost.then_some(Trouble::GroundSpeedLost),
             field::Trouble::WheelSpeed => is_lost.then_some(Trouble::WheelSpeedLost),
             field::Trouble::SpeedFrozen => Some(Trouble::SpeedFrozen),
+            field::Trouble::DepthRange => Some(Trouble::DepthSensorMissing),
+            field::Trouble::DepthFrozen => Some(Trouble::DepthSensorFrozen),
+            field::Trouble::DepthNoisy => Some(Trouble::DepthSensorNoisy),
         });
         found.map_or(Troubles::NONE, Troubles::from)
     }

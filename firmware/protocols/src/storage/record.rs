@@ -12,7 +12,13 @@
 use hitch_quantities::calibration::calibration_words::{
     CALIBRATION_WORDS, ITEM_COUNT, Item, SAFETY_ITEM_COUNT, items, word_range,
 };
+use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
+use hitch_quantities::calibration::valve_table::VALVE_POINTS;
 use hitch_quantities::{Calibration, ValidCalibration};
+
+/// Most values of an entry: those of a valve, the number of its points and two for each.
+const LARGEST_COUNT: usize = 1 + 2 * VALVE_POINTS;
+const _: () = assert!(LARGEST_COUNT >= 2 + LINKAGE_POINTS, "the linkage has more");
 
 /// Words before the entries.
 pub const HEADER_WORDS: usize = 4;
@@ -170,20 +176,25 @@ fn take_values(
     item: Item,
     values: impl Iterator<Item = u32>,
 ) -> bool {
-    let before = *block;
-    let mut taken = 0_u8;
+    let mut taken = [0; LARGEST_COUNT];
+    let count = usize::from(item.count);
+    let mut rest = count;
     let mut good = true;
-    for (index, value) in (item.first..CALIBRATION_WORDS).zip(values) {
-        let value = value.cast_signed();
-        good &= word_range(index).is_some_and(|range| (range.min..=range.max).contains(&value));
-        if let Some(word) = block.get_mut(index) {
-            *word = value;
+    let places = (item.first..CALIBRATION_WORDS).zip(&mut taken);
+    for ((index, place), value) in places.zip(values) {
+        *place = value.cast_signed();
+        good &= word_range(index).is_some_and(|range| (range.min..=range.max).contains(place));
+        rest = rest.saturating_sub(1);
+    }
+    let target = item.first..item.first.saturating_add(count);
+    match (block.get_mut(target), taken.get(..count)) {
+        (Some(target), Some(taken)) if good && rest == 0 => {
+            target
+                .iter_mut()
+                .zip(taken)
+                .for_each(|(place, value)| *place = *value);
+            true
         }
-        taken = taken.saturating_add(1);
+        _ => false,
     }
-    good &= taken == item.count;
-    if !good {
-        *block = before;
-    }
-    good
 }

@@ -275,6 +275,27 @@ fn lost_sensors_of_draft_and_slip_have_their_codes() {
             2,
             1,
         ),
+        (
+            field::Trouble::DepthRange,
+            Trouble::DepthSensorMissing,
+            520_214,
+            31,
+            1,
+        ),
+        (
+            field::Trouble::DepthFrozen,
+            Trouble::DepthSensorFrozen,
+            520_214,
+            9,
+            1,
+        ),
+        (
+            field::Trouble::DepthNoisy,
+            Trouble::DepthSensorNoisy,
+            520_214,
+            2,
+            1,
+        ),
     ] {
         let mut finder = TroubleFinder::default();
         assert_eq!(after(&mut finder, Some(lost), ms - 1), Troubles::NONE);

@@ -35,13 +35,16 @@ fn reassembled(sent: &[Sent], group: Pgn) -> Vec<u8> {
     bytes
 }
 
+/// Packets of a message with all codes: of seven bytes, one each 50 ms.
+fn all_packets() -> u32 {
+    u32::try_from((2 + 4 * Trouble::ALL.len()).div_ceil(7)).unwrap()
+}
+
 #[test]
 fn several_codes_go_as_a_broadcast() {
     let mut bus = Bus::claimed(Variant::Iso11783);
     bus.status.troubles = troubles(Trouble::ALL);
-    // Packets of seven bytes, one each 50 ms.
-    let packets = (2 + 4 * Trouble::ALL.len()).div_ceil(7);
-    bus.run(100 + 50 * u32::try_from(packets).unwrap());
+    bus.run(100 + 50 * all_packets());
     let bytes = reassembled(&bus.sent, Pgn::DM1);
     assert_eq!(bytes.len(), 2 + 4 * Trouble::ALL.len());
     for (trouble, code) in Trouble::ALL.iter().zip(bytes[2..].chunks(4)) {
@@ -59,7 +62,8 @@ fn bus_with_history() -> Bus {
     bus.status.troubles = troubles(Trouble::ALL);
     bus.step();
     bus.status.troubles = Troubles::NONE;
-    bus.run(1_500);
+    // Until their broadcast has ended.
+    bus.run(150 + 50 * all_packets());
     bus.sent.clear();
     bus
 }

@@ -5,13 +5,15 @@ use super::design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
-use super::field_parameters::{DraftParameters, RideParameters, SlipParameters, WorkParameters};
+use super::field_parameters::{
+    DepthParameters, DraftParameters, RideParameters, SlipParameters, WorkParameters,
+};
 use super::linkage::LinkageTable;
 use super::valve_table::ValveTable;
 use crate::units::{MicroLitrePerSecond, MilliAmp};
 
 /// Layout of the block that this firmware reads.
-pub const CALIBRATION_VERSION: u32 = 8;
+pub const CALIBRATION_VERSION: u32 = 9;
 
 /// Largest flow in a table: ten times the pump's, and far from where products saturate.
 pub(super) const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
@@ -58,6 +60,8 @@ pub struct Calibration {
     pub remote: RemoteParameters,
     /// Draft pins and draft control.
     pub draft: DraftParameters,
+    /// External depth sensor and depth control.
+    pub depth: DepthParameters,
     /// Slip guard.
     pub slip: SlipParameters,
     /// Ride damping.

@@ -7,7 +7,9 @@ use super::design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
-use super::field_parameters::{DraftParameters, RideParameters, SlipParameters, WorkParameters};
+use super::field_parameters::{
+    DepthParameters, DraftParameters, RideParameters, SlipParameters, WorkParameters,
+};
 use super::linkage::LINKAGE_POINTS;
 use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
 use super::valve_table::{VALVE_POINTS, ValveTable};
@@ -54,7 +56,7 @@ const fn full_name(group: &str, name: &str) -> u32 {
 }
 
 /// The groups in the order of the block.
-pub const GROUPS: [Group; 18] = [
+pub const GROUPS: [Group; 19] = [
     group::<HydraulicParameters>(),
     group::<SensorParameters>(),
     group::<LockParameters>(),
@@ -69,6 +71,7 @@ pub const GROUPS: [Group; 18] = [
     group::<BusParameters>(),
     group::<RemoteParameters>(),
     group::<DraftParameters>(),
+    group::<DepthParameters>(),
     group::<SlipParameters>(),
     group::<RideParameters>(),
     group::<WorkParameters>(),
@@ -401,6 +404,7 @@ impl Calibration {
             .or_else(|| of(&self.bus, at))
             .or_else(|| of(&self.remote, at))
             .or_else(|| of(&self.draft, at))
+            .or_else(|| of(&self.depth, at))
             .or_else(|| of(&self.slip, at))
             .or_else(|| of(&self.ride, at))
             .or_else(|| of(&self.work, at))

@@ -175,6 +175,9 @@ pub const CLASSES: &[Classified] = &[
         "difference_share", "check_time", "healthy_time", "still_time", "frozen_time", "work_filter", "raised_filter", "soil_draft", "force_per_degree",
         "crossover", "length", "assumed_speed", "dead_band", "step", "margin",
     ]),
+    row("depth", Class::Machine, &[
+        "fitted", "zero", "span", "filter", "noise_limit", "rest_time", "dead_band", "per_degree", "crossover", "step", "margin",
+    ]),
     row("slip", Class::Machine, &[
         "highest_limit", "lowest_speed", "time_out", "frozen_time", "filter", "slip_per_degree", "crossover",
         "most_raise", "radius_time", "radius_range",

@@ -376,6 +376,7 @@ impl Calibration {
         self.bus.visit(visit);
         self.remote.visit(visit);
         self.draft.visit(visit);
+        self.depth.visit(visit);
         self.slip.visit(visit);
         self.ride.visit(visit);
         self.work.visit(visit);

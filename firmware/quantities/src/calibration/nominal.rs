@@ -6,7 +6,9 @@ use super::design_parameters::{
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
     SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
-use super::field_parameters::{DraftParameters, RideParameters, SlipParameters, WorkParameters};
+use super::field_parameters::{
+    DepthParameters, DraftParameters, RideParameters, SlipParameters, WorkParameters,
+};
 use super::linkage::{LINKAGE_POINTS, LinkageTable};
 use super::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
 use crate::units::{MicroLitrePerSecond, Micrometre, MilliAmp, MilliDegree};
@@ -124,6 +126,7 @@ impl Calibration {
             bus: BusParameters::NOMINAL,
             remote: RemoteParameters::NOMINAL,
             draft: DraftParameters::NOMINAL,
+            depth: DepthParameters::NOMINAL,
             slip: SlipParameters::NOMINAL,
             ride: RideParameters::NOMINAL,
             work: WorkParameters::NOMINAL,

@@ -1,4 +1,4 @@
-//! Draft and slip control: what the operator selects, what determines the set point, and which sensor is missing.
+//! Draft, depth and slip control: what the operator selects, what determines the set point, and which sensor is missing.
 
 use crate::units::Count;
 
@@ -15,6 +15,8 @@ pub enum Function {
     Mix = 2,
     /// The draft is regulated, and the lever is the lowest position.
     DepthLimit = 3,
+    /// The depth of an external sensor is regulated, within the calibrated distance of the lever.
+    Depth = 4,
 }
 
 impl Function {
@@ -25,6 +27,7 @@ impl Function {
             Some(Count(1)) => Self::Draft,
             Some(Count(2)) => Self::Mix,
             Some(Count(3)) => Self::DepthLimit,
+            Some(Count(4)) => Self::Depth,
             _ => Self::Position,
         }
     }
@@ -46,7 +49,8 @@ pub enum Reason {
     Ceiling = 5,
     /// The slip is above its limit.
     Slip = 6,
-    /// A function of the draft is selected, but the implement is above the ground: the lever.
+    /// A function of the draft or the depth is selected, but the implement is above the ground, or the hitch has not rested for
+    /// long enough for the depth sensor: the lever.
     AboveGround = 7,
     /// A function has ended or lost its sensor: the present depth is held until the lever takes over.
     Holds = 8,
@@ -54,11 +58,13 @@ pub enum Reason {
     Ride = 9,
     /// The switch of quick engagement is held: the hitch is lowered into the soil.
     Engages = 10,
+    /// The depth of the external sensor.
+    Depth = 11,
 }
 
 impl Reason {
     /// All of them, in the order of their codes, which begin at 1.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Draft,
         Self::Mix,
         Self::DepthLimit,
@@ -69,6 +75,7 @@ impl Reason {
         Self::Holds,
         Self::Ride,
         Self::Engages,
+        Self::Depth,
     ];
 
     /// Name as it appears in text outputs.
@@ -85,11 +92,12 @@ impl Reason {
             Self::Holds => "holds",
             Self::Ride => "ride",
             Self::Engages => "engages",
+            Self::Depth => "depth",
         }
     }
 }
 
-/// Sensor of draft or slip control that is lost, with the code it has on links and in traces; 0 is none.
+/// Sensor of draft, depth or slip control that is lost, with the code it has on links and in traces; 0 is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Trouble {
@@ -105,17 +113,26 @@ pub enum Trouble {
     WheelSpeed = 5,
     /// A speed stands still to the last bit while the other one changes.
     SpeedFrozen = 6,
+    /// The depth sensor is missing or out of its range.
+    DepthRange = 7,
+    /// The depth sensor stands still to the last bit while the implement works.
+    DepthFrozen = 8,
+    /// The depth sensor is too noisy.
+    DepthNoisy = 9,
 }
 
 impl Trouble {
     /// All of them, in the order of their codes, which begin at 1.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 9] = [
         Self::PinRange,
         Self::PinsDisagree,
         Self::PinFrozen,
         Self::GroundSpeed,
         Self::WheelSpeed,
         Self::SpeedFrozen,
+        Self::DepthRange,
+        Self::DepthFrozen,
+        Self::DepthNoisy,
     ];
 
     /// Name as it appears in text outputs.
@@ -128,6 +145,9 @@ impl Trouble {
             Self::GroundSpeed => "ground-speed",
             Self::WheelSpeed => "wheel-speed",
             Self::SpeedFrozen => "speed-frozen",
+            Self::DepthRange => "depth-range",
+            Self::DepthFrozen => "depth-frozen",
+            Self::DepthNoisy => "depth-noisy",
         }
     }
 }
@@ -161,7 +181,8 @@ mod tests {
             (2, Function::Mix),
             (3, Function::DepthLimit),
             (0, Function::Position),
-            (4, Function::Position),
+            (4, Function::Depth),
+            (5, Function::Position),
             (-1, Function::Position),
         ] {
             assert_eq!(Function::from_code(Some(Count(code))), function);

@@ -126,6 +126,10 @@ pub struct Inputs {
     pub mix: Option<PerMille>,
     /// Slip limit of the operator.
     pub slip_limit: Option<PerMille>,
+    /// External depth sensor; its output over its supply.
+    pub depth_sensor: Option<SupplyShare>,
+    /// Set point of the depth.
+    pub depth_set_point: Option<Micrometre>,
     /// Code of the selected function ([`field::Function`]).
     pub function: Option<Count>,
     /// What the operator has switched on.
@@ -231,7 +235,7 @@ pub struct Outputs {
     pub lower_duty: Duty,
     /// What determines the set point; `None`: the lever, an implement or quick lift alone.
     pub reference: Option<Reason>,
-    /// Lost sensor of draft or slip control.
+    /// Lost sensor of draft, depth or slip control.
     pub trouble: Option<Trouble>,
     /// Draft without its noise, positive against the direction of travel; `None`: no pins, or they are lost.
     pub draft: Option<Newton>,
@@ -292,8 +296,8 @@ impl Inputs {
     }
 
     /// A word of validity bits (bit 0: lever, and on in the order of the fields) and switches (bit 24:
-    /// transport lock, and on; bit 30: a fault of the enable line), then the values. The inputs of draft and slip control
-    /// are not in the image.
+    /// transport lock, and on; bit 30: a fault of the enable line), then the values. The inputs of draft, depth and slip
+    /// control are not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
         let mut writer = Writer::new([0; INPUT_BYTES]);

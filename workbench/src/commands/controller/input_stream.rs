@@ -191,8 +191,8 @@ fn number(column: usize, cell: &str) -> Result<Option<f64>, LineError> {
 mod tests {
     use super::*;
     use hitch_quantities::units::{
-        MilliBar, MilliDegree, MillimetrePerSecond, Newton, PerMille, RevolutionPerMinute,
-        SupplyShare,
+        Micrometre, MilliBar, MilliDegree, MillimetrePerSecond, Newton, PerMille,
+        RevolutionPerMinute, SupplyShare,
     };
     use hitch_quantities::{Function, Switches};
 
@@ -248,7 +248,7 @@ mod tests {
         );
         let mut columns = Columns::parse(&header).unwrap();
         let inputs = columns
-            .inputs("0,90,90,56.25,56.26,1.8,,18000,50,15.5,2\n")
+            .inputs("0,90,90,56.25,56.26,1.8,,18000,50,15.5,2,37.5,250\n")
             .unwrap();
         assert_eq!(inputs.left_pin, Some(SupplyShare(56_250)));
         assert_eq!(inputs.right_pin, Some(SupplyShare(56_260)));
@@ -258,6 +258,8 @@ mod tests {
         assert_eq!(inputs.mix, Some(PerMille(500)));
         assert_eq!(inputs.slip_limit, Some(PerMille(155)));
         assert_eq!(Function::from_code(inputs.function), Function::Mix);
+        assert_eq!(inputs.depth_sensor, Some(SupplyShare(37_500)));
+        assert_eq!(inputs.depth_set_point, Some(Micrometre(250_000)));
         assert!(columns.has_field());
         assert!(!Columns::parse(HEADER).unwrap().has_field());
     }

@@ -1,5 +1,5 @@
 //! What the parts of a step take: the valve maps, the proportional and integral part of a coil's current, all of
-//! the currents' regulation, and the reference layer of draft and slip control.
+//! the currents' regulation, and the reference layer of draft, depth and slip control.
 //!
 //! A part is called by address, and so is a function that does nothing; the difference is the part's own.
 
@@ -11,8 +11,8 @@ use hitch_control::operator::engage::Engagement;
 use hitch_control::reference::{ReferenceControl, Situation};
 use hitch_control::valve::valve_map::{ValveCurves, ValveMap};
 use hitch_quantities::units::{
-    Count, MicroLitrePerSecond, MicrometrePerSecond, MilliAmp, MilliBar, MilliDegree, MilliVolt,
-    MillimetrePerSecond, Newton, PerMille, SupplyShare,
+    Count, MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, MilliBar, MilliDegree,
+    MilliVolt, MillimetrePerSecond, Newton, PerMille, SupplyShare,
 };
 use hitch_quantities::{Calibration, CoilCurrents, Inputs, ValidCalibration};
 
@@ -179,8 +179,8 @@ fn time_regulation(stopwatch: &Stopwatch, calibration: &ValidCalibration) {
     report("regulation_of_both_coils=", most[1]);
 }
 
-/// The most ticks of sensors and set point of the reference layer, over functions, drafts and slips that reach the soil,
-/// the limits and the guard. The layer of a machine without pins takes none.
+/// The most ticks of sensors and set point of the reference layer, over functions, drafts, depths and slips that reach the soil,
+/// the limits and the guard. The layer of a machine without pins and depth sensor takes none.
 #[inline(never)]
 fn time_reference(stopwatch: &Stopwatch) {
     type Step = fn(&mut ReferenceControl, &Inputs, &Situation, &Calibration) -> i32;
@@ -191,12 +191,13 @@ fn time_reference(stopwatch: &Stopwatch) {
     let nothing: Step = |_, _, _, _| 0;
     let mut calibration = Calibration::nominal();
     calibration.draft.fitted = Count(1);
+    calibration.depth.fitted = Count(1);
     calibration.slip.highest_limit = PerMille(300);
     let mut on = ReferenceControl::default();
     let mut most = 0;
     for step in 0..20_000 {
         // Without a common divisor these meet in every way.
-        let function = step / 500 % 4;
+        let function = step / 500 % 5;
         let draft = step / 1_300 % 5 * 600;
         let is_received = step % 100 == 0;
         let speed = |speed| is_received.then_some(MillimetrePerSecond(speed + step / 100 % 3));
@@ -206,6 +207,8 @@ fn time_reference(stopwatch: &Stopwatch) {
             ground_speed: speed(1_500),
             wheel_speed: speed(1_500 + step / 1_700 % 4 * 250),
             draft_set_point: Some(Newton(18_000)),
+            depth_sensor: Some(SupplyShare(25_000 + 10 * draft + step % 7)),
+            depth_set_point: Some(Micrometre(250_000)),
             function: Some(Count(function)),
             ..Inputs::default()
         };

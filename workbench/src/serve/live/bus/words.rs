@@ -96,6 +96,9 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::GroundSpeedLost => "ground speed not received",
         Trouble::WheelSpeedLost => "wheel speed not received",
         Trouble::SpeedFrozen => "ground speed or wheel speed frozen",
+        Trouble::DepthSensorMissing => "the depth sensor missing or out of range",
+        Trouble::DepthSensorFrozen => "the depth sensor frozen",
+        Trouble::DepthSensorNoisy => "the depth sensor too noisy",
         Trouble::Ride => "current of ride damping that must not be",
     }
 }

@@ -1,4 +1,4 @@
-//! Draft loop: from the deviation of the draft to a set point of position control.
+//! Loop of draft and depth: from the deviation of the quantity to a set point of position control.
 //!
 //! Draft is proportional to depth, so it changes with the angle the more, the harder the soil is at the present depth. The
 //! error as an angle is therefore
@@ -9,18 +9,20 @@
 //!
 //! which is the change of depth that the soil asks for, also where it is twice as hard. The dial mixes it with the distance of
 //! the lever: `m e + (1 - m) (lever - u)`, whose rest is `u = lever + e m / (1 - m)`.
+//!
+//! The error of a depth `z` as an angle is `(z - z_set) / (depth per degree)`; it has no part of the lever.
 
-use hitch_quantities::calibration::field_parameters::DraftParameters;
+use hitch_quantities::calibration::field_parameters::{DepthParameters, DraftParameters};
 use hitch_quantities::fixed::{Divisor, mul_div};
-use hitch_quantities::units::{MilliDegree, Newton, PerMille};
+use hitch_quantities::units::{Micrometre, MilliDegree, Newton, PerMille};
 
 use super::lag_loop::{Gains, Integral};
 
 /// Errors of a step as angles; positive raises.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Errors {
-    /// Weighted error of the draft.
-    draft: MilliDegree,
+    /// Weighted error of the draft, or error of the depth.
+    quantity: MilliDegree,
     /// Weighted distance of the lever.
     position: MilliDegree,
 }
@@ -37,8 +39,25 @@ impl Errors {
         let error = draft_error(draft, set_point, parameters);
         let mix = mix.limited(PerMille::ZERO, PerMille::WHOLE);
         Self {
-            draft: error.scaled(mix.0, Divisor::THOUSAND),
+            quantity: error.scaled(mix.0, Divisor::THOUSAND),
             position: lever_ahead.scaled((PerMille::WHOLE - mix).0, Divisor::THOUSAND),
+        }
+    }
+
+    /// Errors of a depth.
+    #[must_use]
+    pub fn of_depth(
+        depth: Micrometre,
+        set_point: Micrometre,
+        parameters: &DepthParameters,
+    ) -> Self {
+        let deviation = depth - set_point;
+        let band = parameters.dead_band;
+        let beyond = deviation - deviation.limited(-band, band);
+        let per_degree = Divisor::at_least_one(parameters.per_degree.0);
+        Self {
+            quantity: MilliDegree(mul_div(beyond.0, 1_000, per_degree)),
+            position: MilliDegree::ZERO,
         }
     }
 }
@@ -57,30 +76,30 @@ fn draft_error(draft: Newton, set_point: Newton, parameters: &DraftParameters) -
 
 /// The loop.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct DraftLoop {
+pub struct FunctionLoop {
     integral: Integral,
 }
 
-impl DraftLoop {
+impl FunctionLoop {
     /// A loop whose first demand is `demand`.
     #[must_use]
     pub fn from(demand: MilliDegree, errors: Errors, gains: Gains) -> Self {
         Self {
-            integral: Integral::at(demand - gains.proportional(errors.draft)),
+            integral: Integral::at(demand - gains.proportional(errors.quantity)),
         }
     }
 
     /// The demand with these errors.
     #[must_use]
     pub fn demand(&self, errors: Errors, gains: Gains) -> MilliDegree {
-        self.integral.value() + gains.proportional(errors.draft)
+        self.integral.value() + gains.proportional(errors.quantity)
     }
 
     /// The step ends with the set point `used`, instead of `demand`.
     pub fn follow(&mut self, errors: Errors, gains: Gains, demand: MilliDegree, used: MilliDegree) {
         let back = used - demand;
         self.integral
-            .add(errors.draft + errors.position + back, gains);
+            .add(errors.quantity + errors.position + back, gains);
     }
 }
 
@@ -119,12 +138,25 @@ mod tests {
     }
 
     #[test]
+    fn the_error_of_the_depth_is_the_angle_of_what_is_beyond_the_dead_band() {
+        let of = |millimetre: i32| {
+            let depth = Micrometre(millimetre * 1_000);
+            Errors::of_depth(depth, Micrometre(250_000), &DepthParameters::NOMINAL)
+                .quantity
+                .0
+        };
+        assert_eq!([of(236), of(250), of(264)], [0; 3]);
+        assert_eq!([of(255 + 18), of(245 - 18)], [1_000, -1_000]);
+        assert!(of(-2_000_000) < 0 && of(2_000_000) > 0);
+    }
+
+    #[test]
     fn it_begins_without_a_step_whatever_the_error_is() {
         for draft in [0, 9_000, 18_000, 40_000] {
             let (lever, mix) = (MilliDegree(1_000), PerMille(700));
             let errors = Errors::of((Newton(draft), SET), lever, mix, &PARAMETERS);
             let start = MilliDegree(61_234);
-            let control = DraftLoop::from(start, errors, gains());
+            let control = FunctionLoop::from(start, errors, gains());
             let off = control.demand(errors, gains()) - start;
             assert!(off.magnitude() <= MilliDegree(1), "{off:?}");
         }
@@ -132,9 +164,9 @@ mod tests {
 
     #[test]
     fn a_limit_leaves_no_windup() {
-        let mut control = DraftLoop::from(MilliDegree(60_000), Errors::default(), gains());
+        let mut control = FunctionLoop::from(MilliDegree(60_000), Errors::default(), gains());
         let limit = MilliDegree(62_000);
-        let step = |control: &mut DraftLoop, draft| {
+        let step = |control: &mut FunctionLoop, draft| {
             let of = (Newton(draft), SET);
             let errors = Errors::of(of, MilliDegree::ZERO, PerMille::WHOLE, &PARAMETERS);
             let demand = control.demand(errors, gains());
@@ -154,7 +186,7 @@ mod tests {
     fn the_mix_rests_where_the_weighted_errors_balance() {
         let (lever, mix) = (MilliDegree(60_000), PerMille(500));
         let mut set_point = lever;
-        let mut control = DraftLoop::from(set_point, Errors::default(), gains());
+        let mut control = FunctionLoop::from(set_point, Errors::default(), gains());
         for _ in 0..20_000 {
             let of = (Newton(20_000), SET);
             let errors = Errors::of(of, lever - set_point, mix, &PARAMETERS);
