@@ -191,7 +191,7 @@ pub const CLASSES: &[Classified] = &[
     row("ride", DOWN, &[
         "fitted", "speed", "band", "time_out",
     ]),
-    row("work", Class::Live, &[
+    row("work", Class::Machine, &[
         "angle", "band",
     ]),
     row("safety", UP, &[
