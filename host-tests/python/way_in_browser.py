@@ -39,10 +39,30 @@ def first_model(page: Page) -> None:
     assert page.locator("#title").inner_text() != before
     page.click("#first-back")
     expect(page.locator("#title")).to_have_text(before)
+    tables(page)
+
+
+def choose_table(page: Page, of: str, text: bytes) -> None:
+    """Chooses a table for a valve."""
+    with page.expect_file_chooser() as choosing:
+        page.locator(f"#sheet-tables [data-of={of}]").press("Enter")
+    choosing.value.set_files({"name": "curve.csv", "mimeType": "text/csv", "buffer": text})
+
+
+def tables(page: Page) -> None:
+    """A flow curve of a table becomes that of its valve."""
+    before = page.locator("#title").inner_text()
+    page.locator("#sheet > summary").click()
+    choose_table(page, "lower", b"Strom [mA];Durchfluss [l/min]\n0;0\n1100;0\n3200;40,0\n")
+    expect(page.locator("#first-status")).to_contain_text("3 points, opens at 1.10 A, 40.0 l/min at 3.20 A")
+    expect(page.locator("[data-name='lower_valve.opens']")).to_have_value("1.100")
+    expect(page.locator("#title")).not_to_have_text(before)
+    page.click("#first-back")
+    expect(page.locator("#title")).to_have_text(before)
 
 
 def refused(page: Page) -> None:
-    """A value that is no number is refused with the name of its constant."""
+    """A value that is no number is refused with the name of its constant, and a table without a current with its line."""
     page.wait_for_selector("#views[data-ready]")
     step(page, "model").click()
     page.locator("#first > summary").click()
@@ -50,6 +70,8 @@ def refused(page: Page) -> None:
     page.locator("[data-name='cylinder.bore_mm']").fill("wide")
     page.locator("#sheet-form button").click()
     expect(page.locator("#first-fault")).to_contain_text("cylinder.bore_mm")
+    choose_table(page, "lift", b"a,b\n1,2\n")
+    expect(page.locator("#first-fault")).to_contain_text("curve.csv:1:")
     assert_accessible(page)
 
 

@@ -58,16 +58,23 @@ impl SourceFile {
     /// # Errors
     /// The file is missing, not a regular file, too long, not readable or not text.
     pub fn read_any(path: &Path) -> Result<Self, InputError> {
-        let bytes = bytes_of(path)?;
-        let binary = file_kind::of_magic(&bytes).or_else(|| {
-            let no_text = || file_kind::of_binary(&bytes);
-            (!is_utf16(&bytes)).then(no_text).flatten()
+        Self::any_of(path, &bytes_of(path)?)
+    }
+
+    /// Text in any encoding, as [`SourceFile::read_any`]; `path` is its name in messages.
+    ///
+    /// # Errors
+    /// The bytes are not text.
+    pub fn any_of(path: &Path, bytes: &[u8]) -> Result<Self, InputError> {
+        let binary = file_kind::of_magic(bytes).or_else(|| {
+            let no_text = || file_kind::of_binary(bytes);
+            (!is_utf16(bytes)).then(no_text).flatten()
         });
         match binary {
             Some((what, hint)) => Err(is_binary(path, what, hint)),
             None => Ok(Self {
                 path: path.to_path_buf(),
-                text: decoded(&bytes),
+                text: decoded(bytes),
             }),
         }
     }

@@ -2,3 +2,6 @@
 
 pub mod data_sheet;
 pub mod fit;
+pub mod flow_curve;
+pub mod linkage_table;
+mod number_table;

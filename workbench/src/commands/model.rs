@@ -1,9 +1,6 @@
 //! `hitch model`: creates a model file from data sheets, and fits its constants to a campaign.
 pub mod fit;
-mod flow_curve;
-mod linkage_table;
 pub mod new;
-mod number_table;
 
 use clap::Subcommand;
 

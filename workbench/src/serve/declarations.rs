@@ -8,6 +8,7 @@ use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value};
 
 use super::first::{CheckedConstants, Sheet};
+use super::first_table::TakenTable;
 use super::live::answer::LoopAnswer;
 use super::own_term::FormulaElements;
 use super::routes::Checked;
@@ -79,6 +80,7 @@ fn views(generator: &mut SchemaGenerator) {
     root::<ModelMap>(generator);
     root::<Surveyed>(generator);
     root::<Sheet>(generator);
+    root::<TakenTable>(generator);
     root::<CheckedConstants>(generator);
     root::<ExpectedRuns>(generator);
     root::<FormulaElements>(generator);

@@ -231,7 +231,7 @@ async fn back(State(sessions): Known, Json(of): Json<Of>) -> Answer {
 }
 
 /// Evaluates another first model on the campaign of the session.
-async fn exchange(session: Shared, model: Model) -> Answer {
+pub(super) async fn exchange(session: Shared, model: Model) -> Answer {
     let subject = {
         let open = lock(&session);
         if open.job.is_some() {

@@ -7,6 +7,7 @@ mod assets;
 mod declarations;
 mod fault;
 mod first;
+mod first_table;
 mod guard;
 mod jobs;
 mod live;

@@ -25,7 +25,7 @@ use super::tasks::Task;
 use super::views::run::RunView;
 use super::views::state::{Begun, State as SessionState};
 use super::views::trial::{RunParts, Signature, TriedRuns};
-use super::{assets, first, jobs, live, next_routes, saving, second_routes, upload};
+use super::{assets, first, first_table, jobs, live, next_routes, saving, second_routes, upload};
 use crate::comparison::{WorstStretch, worst_in_part};
 use crate::error::Error;
 use crate::report::map_view::Located;
@@ -52,6 +52,7 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/go", post(go))
         .route("/{token}/api/events", get(events))
         .merge(first::routes())
+        .merge(first_table::routes())
         .merge(live::routes())
         .merge(next_routes::routes())
         .merge(saving::routes())

@@ -936,6 +936,12 @@ interface TakenColumn {
   assumed: boolean;
 }
 
+/** A table that was taken. */
+interface TakenTable {
+  /** Its points and ranges, in words. */
+  said: string;
+}
+
 /** Errors of all runs with a parameter set by hand, sigma. */
 interface TriedRuns {
   /** Of all channels. */

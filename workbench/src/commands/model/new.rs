@@ -4,11 +4,12 @@ use std::io;
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
+use hitch_input::source_file::SourceFile;
 use hitch_model_file::{Template, Valve};
 use hitch_plant::ValveCurve;
 
-use super::{flow_curve, linkage_table};
 use crate::base_model::data_sheet::{self, QUESTIONS};
+use crate::base_model::{flow_curve, linkage_table};
 use crate::error::Error;
 use crate::output;
 use crate::output::targets::Outputs;
@@ -70,7 +71,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         template.set("pump.kind", kind).map_err(Error::Usage)?;
     }
     if let Some(path) = &args.linkage_table {
-        template.set_linkage(linkage_table::read(path)?);
+        template.set_linkage(linkage_table::of(&SourceFile::read_any(path)?)?);
     }
     for set in &args.set {
         let (name, value) = set.split_once('=').ok_or_else(|| {
@@ -82,7 +83,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     }
     for (valve, path) in [Valve::Lift, Valve::Lower].into_iter().zip(curves) {
         if let Some(path) = path {
-            template.set_curve(valve, flow_curve::read(path)?);
+            template.set_curve(valve, flow_curve::of(&SourceFile::read_any(path)?)?);
         }
     }
     if !args.yes && io::stdin().is_terminal() && io::stderr().is_terminal() {

@@ -17,13 +17,14 @@ export function connectFirst(exchanged, run) {
   const exchange = async (/** @type {() => Promise<any>} */ request) => {
     byId("first-fault").replaceChildren();
     byId("first-status").textContent = "Evaluating the model";
+    let said = "";
     try {
-      await request();
+      said = (await request()).said ?? "";
       await exchanged();
     } catch (error) {
       byId("first-fault").replaceChildren(...faultLines(error));
     } finally {
-      byId("first-status").textContent = "";
+      byId("first-status").textContent = said;
     }
   };
   const input = /** @type {HTMLInputElement} */ (byId("first-input"));
@@ -35,15 +36,32 @@ export function connectFirst(exchanged, run) {
   });
   for (const name of ["nominal", "dynamic"]) byId(`first-${name}`).addEventListener("click", () => exchange(() => post("first/named", { name })));
   byId("first-back").addEventListener("click", () => exchange(() => post("first/back", {})));
-  byId("sheet").addEventListener("toggle", (event) => {
-    if (/** @type {HTMLDetailsElement} */ (event.target).open) drawSheet().catch((error) => byId("first-fault").replaceChildren(...faultLines(error)));
-  });
+  connectTables(exchange);
+  byId("sheet").addEventListener("toggle", showSheet);
   byId("sheet-form").addEventListener("submit", (event) => {
     event.preventDefault();
     exchange(() => post("first/sheet", { name: /** @type {HTMLInputElement} */ (byId("sheet-name")).value, values: changed() }));
   });
   byId("constants-fit").addEventListener("click", async () => {
     if (await check().catch(sayError)) await run({ task: "constants", known: known() });
+  });
+}
+
+/** Connects the buttons that take a flow curve or a linkage from a table.
+ * @param {(request: () => Promise<any>) => Promise<void>} exchange */
+function connectTables(exchange) {
+  const input = /** @type {HTMLInputElement} */ (byId("table-input"));
+  for (const button of /** @type {NodeListOf<HTMLElement>} */ (byId("sheet-tables").querySelectorAll("button"))) {
+    button.addEventListener("click", () => {
+      input.dataset.of = button.dataset.of;
+      input.click();
+    });
+  }
+  input.addEventListener("change", () => {
+    const file = input.files?.[0];
+    input.value = "";
+    if (!file) return;
+    exchange(() => send("first/table", { name: file.name, of: input.dataset.of ?? "" }, file)).then(showSheet);
   });
 }
 
@@ -77,6 +95,12 @@ function drawFitted(fitted) {
       element("table", {}, head, element("tbody", {}, ...rows))),
     ...list("Not determined by this campaign, declared value kept", fitted.not_determined),
     ...list("At the limit of the allowed deviation, check the data sheet", fitted.at_an_end));
+}
+
+/** Draws the form of the data sheet, if it is open. */
+function showSheet() {
+  if (!/** @type {HTMLDetailsElement} */ (byId("sheet")).open) return;
+  drawSheet().catch((error) => byId("first-fault").replaceChildren(...faultLines(error)));
 }
 
 /** Draws the form of the data sheet with the values of the first model. */

@@ -1,7 +1,5 @@
 //! A measured linkage from a text table.
 
-use std::path::Path;
-
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::{LinkageTable, LinkageTableError};
@@ -40,9 +38,8 @@ const COLUMNS: [Wanted; 3] = [
 ///
 /// # Errors
 /// A fault in the table, by line.
-pub fn read(path: &Path) -> Result<LinkageTable, InputError> {
-    let source = SourceFile::read_any(path)?;
-    let table = NumberTable::read(&source, &COLUMNS)?;
+pub fn of(source: &SourceFile) -> Result<LinkageTable, InputError> {
+    let table = NumberTable::read(source, &COLUMNS)?;
     let [travel_m, angle_rad, height_m] = table.columns;
     LinkageTable::new(travel_m, angle_rad, height_m).map_err(|fault| match fault {
         LinkageTableError::Order { index } => source.error_at(
@@ -56,12 +53,15 @@ pub fn read(path: &Path) -> Result<LinkageTable, InputError> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
 
     fn read_text(text: &str) -> Result<LinkageTable, InputError> {
-        let file = tempfile::NamedTempFile::new().expect("a file");
-        std::fs::write(file.path(), text).expect("a file");
-        read(file.path())
+        of(&SourceFile::any_of(
+            Path::new("table.csv"),
+            text.as_bytes(),
+        )?)
     }
 
     #[test]

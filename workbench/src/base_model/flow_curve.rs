@@ -1,7 +1,5 @@
 //! Flow curve of a valve from a text table, as given by a data sheet or a flow bench.
 
-use std::path::Path;
-
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::{ValveCurve, ValveCurveError};
@@ -31,9 +29,8 @@ const COLUMNS: [Wanted; 2] = [
 ///
 /// # Errors
 /// A fault in the table, by line and column.
-pub fn read(path: &Path) -> Result<ValveCurve, InputError> {
-    let source = SourceFile::read_any(path)?;
-    let table = NumberTable::read(&source, &COLUMNS)?;
+pub fn of(source: &SourceFile) -> Result<ValveCurve, InputError> {
+    let table = NumberTable::read(source, &COLUMNS)?;
     let ([currents, flows], bytes) = (table.columns, table.bytes);
     let passes_at_rest = flows.first().is_some_and(|&flow| flow > 0.0);
     if passes_at_rest {
@@ -55,12 +52,15 @@ pub fn read(path: &Path) -> Result<ValveCurve, InputError> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
 
     fn read_text(text: &str) -> Result<ValveCurve, InputError> {
-        let file = tempfile::NamedTempFile::new().expect("a file");
-        std::fs::write(file.path(), text).expect("a file");
-        read(file.path())
+        of(&SourceFile::any_of(
+            Path::new("table.csv"),
+            text.as_bytes(),
+        )?)
     }
 
     #[test]
@@ -72,7 +72,7 @@ mod tests {
         assert_eq!(english, german);
         let table = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("../model/paper/data/table2a_lift_valve.csv");
-        let shipped = read(&table).expect("a curve");
+        let shipped = of(&SourceFile::read_any(&table).expect("a file")).expect("a curve");
         // The model omits collinear points at the end.
         let nominal = hitch_model_file::nominal();
         let curve = &nominal.constants().lift_valve.curve;
