@@ -18,7 +18,8 @@ use crate::closed_loop::{
 };
 use crate::commands::loop_scenario::{self, LoopScenario};
 use crate::error::Error;
-use crate::field_loop::scenario::{self, FieldFigure, FieldRun, FieldScenario};
+use crate::field_loop::field_figure::FieldFigure;
+use crate::field_loop::scenario::{self, FieldRun, FieldScenario};
 use crate::output::JsonArg;
 use crate::output::progress::Progress;
 use crate::output::targets::Outputs;

@@ -8,6 +8,7 @@
 //! ```
 
 pub mod coupling;
+pub mod field_figure;
 pub mod figures;
 pub mod pass;
 pub mod rig;

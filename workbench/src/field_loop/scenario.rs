@@ -11,10 +11,9 @@ use hitch_field::tractor::{Outputs as Field, TractorConstants};
 use hitch_plant::Model;
 use hitch_quantities::units::{Count, PerMille};
 use hitch_quantities::{Function, ValidCalibration};
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::coupling::Coupling;
+use super::field_figure::FieldFigure;
 use super::figures::Spread;
 use super::pass::{Comparison, DEPTH_M, DRAFT_N, LINK_DEPTH_M, Pass, SPEED_M_S};
 use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings, TOUCH_DEG};
@@ -42,36 +41,6 @@ pub enum FieldScenario {
     Transport,
     /// Draft control that is raised on a headland and lowered again
     Headland,
-}
-
-/// A figure of a scenario.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct FieldFigure {
-    /// What it is.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// Its unit; empty for a ratio.
-    pub unit: &'static str,
-    /// The largest value that meets the requirement, if there is one.
-    pub required: Option<f64>,
-}
-
-impl FieldFigure {
-    fn new(name: &str, value: f64, unit: &'static str, required: Option<f64>) -> Self {
-        Self {
-            name: name.to_owned(),
-            value,
-            unit,
-            required,
-        }
-    }
-
-    /// Whether it meets its requirement.
-    #[must_use]
-    pub fn is_met(&self) -> bool {
-        self.required.is_none_or(|required| self.value <= required)
-    }
 }
 
 /// A driven scenario.

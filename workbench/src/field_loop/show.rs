@@ -1,6 +1,6 @@
 //! Figures of a scenario of the field as a table, for terminal and report.
 
-use super::scenario::FieldFigure;
+use super::field_figure::FieldFigure;
 use crate::text::{Table, known};
 
 /// Header of the table.

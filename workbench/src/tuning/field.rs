@@ -9,7 +9,8 @@ use super::Change;
 use super::figures::Figure;
 use super::knobs::{changes, with_values, without};
 use super::search::{Costly, search};
-use crate::field_loop::scenario::{FieldFigure, FieldScenario, drive};
+use crate::field_loop::field_figure::FieldFigure;
+use crate::field_loop::scenario::{FieldScenario, drive};
 
 /// First seed of the soils that the search drives on.
 const SEARCHED: u64 = 1;

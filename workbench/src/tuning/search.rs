@@ -8,7 +8,7 @@ use cmaes::{CMAESOptions, DVector};
 /// Initial standard deviation in octaves of each value: 0.3 is about 20 %.
 const START_SIGMA: f64 = 0.3;
 
-/// What has a cost.
+/// A candidate with a cost.
 pub trait Costly {
     /// The objective of the search; a smaller one is better.
     fn cost(&self) -> f64;
