@@ -24,6 +24,8 @@ const FILTER_BITS: u32 = 8;
 pub struct SlipSignal {
     ground: Received,
     wheel: Received,
+    /// One speed stands still while the other one changes, until both change.
+    one_is_frozen: bool,
     /// Of 2^-26.
     factor: i32,
     filter: LowPass,
@@ -34,6 +36,7 @@ impl Default for SlipSignal {
         Self {
             ground: Received::default(),
             wheel: Received::default(),
+            one_is_frozen: false,
             factor: ONE << BITS,
             filter: LowPass::default(),
         }
@@ -77,15 +80,19 @@ impl SlipSignal {
 
     /// Both speeds; none below the lowest speed.
     fn speeds(
-        &self,
+        &mut self,
         parameters: &SlipParameters,
     ) -> Result<Option<(MillimetrePerSecond, MillimetrePerSecond)>, Trouble> {
         let ground = self.ground.last.ok_or(Trouble::GroundSpeed)?;
         let wheel = self.wheel.last.ok_or(Trouble::WheelSpeed)?;
-        let stands = |one: &Received, other: &Received| {
-            one.still >= parameters.frozen_time && other.still < parameters.frozen_time
-        };
-        if stands(&self.ground, &self.wheel) || stands(&self.wheel, &self.ground) {
+        let [ground_is_still, wheel_is_still] =
+            [&self.ground, &self.wheel].map(|speed| speed.still >= parameters.frozen_time);
+        let moves = ground.max(wheel) >= parameters.lowest_speed;
+        // Two speeds that are both still say nothing about each other.
+        if !moves || !(ground_is_still && wheel_is_still) {
+            self.one_is_frozen = moves && (ground_is_still || wheel_is_still);
+        }
+        if self.one_is_frozen {
             return Err(Trouble::SpeedFrozen);
         }
         Ok((ground >= parameters.lowest_speed).then_some((ground, wheel)))
@@ -189,16 +196,45 @@ mod tests {
         let _ = run(&mut signal, 1_000, both, true);
         let found = run(&mut signal, 700, [Some(1_800), None], true);
         assert_eq!(found, Err(Trouble::WheelSpeed));
-        let mut signal = SlipSignal::default();
-        let mut found = Ok(None);
-        for step in 0..4_000 {
+    }
+
+    /// Steps with both speeds in each; the last slip.
+    fn told(
+        signal: &mut SlipSignal,
+        steps: i32,
+        speeds: impl Fn(i32) -> [i32; 2],
+    ) -> Result<Option<PerMille>, Trouble> {
+        (0..steps).fold(Ok(None), |_, step| {
+            let [ground, wheel] = speeds(step).map(MillimetrePerSecond);
             let inputs = Inputs {
-                ground_speed: Some(MillimetrePerSecond(1_800)),
-                wheel_speed: Some(MillimetrePerSecond(2_000 + step % 5)),
+                ground_speed: Some(ground),
+                wheel_speed: Some(wheel),
                 ..Inputs::default()
             };
-            found = signal.step(&inputs, true, &PARAMETERS);
-        }
+            signal.step(&inputs, true, &PARAMETERS)
+        })
+    }
+
+    #[test]
+    fn a_speed_that_stands_still_is_lost_until_it_changes_even_if_the_other_one_rests_too() {
+        let mut signal = SlipSignal::default();
+        let found = told(&mut signal, 4_000, |step| [1_800, 2_000 + step % 5]);
         assert_eq!(found, Err(Trouble::SpeedFrozen));
+        let found = told(&mut signal, 4_000, |_| [1_800, 2_000]);
+        assert_eq!(found, Err(Trouble::SpeedFrozen));
+        let found = told(&mut signal, 10, |step| [1_800 + step, 2_000 + step]);
+        assert!(found.is_ok(), "{found:?}");
+    }
+
+    #[test]
+    fn a_tractor_that_stops_with_one_speed_before_the_other_has_lost_none() {
+        let mut signal = SlipSignal::default();
+        let _ = told(&mut signal, 2_000, |step| {
+            [1_800 + step % 5, 2_000 + step % 5]
+        });
+        for _ in 0..80 {
+            let found = told(&mut signal, 100, |step| [0, (50 - step).max(0)]);
+            assert_eq!(found, Ok(None));
+        }
     }
 }
