@@ -12,6 +12,8 @@ use hitch_workbench::field_loop::rig::{FieldRig, FieldSample, RAISED_DEG, Settin
 use host_tests::seeds::cases;
 use host_tests::trace;
 
+use crate::beyond::Motion;
+
 /// When the implement is lowered.
 const BEGINS: usize = 8_000;
 
@@ -237,13 +239,14 @@ fn locks_and_lost_pins_end_it_as_any_motion() {
             None,
         ),
     ];
+    let run = Run {
+        function: Function::Draft,
+        by: By::Engage(10_000),
+        dial: Some(600),
+        seed: 1,
+    };
+    let healthy = run.drive(|_, _| {});
     for (name, fault, state) in cases {
-        let run = Run {
-            function: Function::Draft,
-            by: By::Engage(10_000),
-            dial: Some(600),
-            seed: 1,
-        };
         let from = BEGINS + 300;
         let samples = run.drive(|step, inputs| {
             if step >= from {
@@ -254,16 +257,17 @@ fn locks_and_lost_pins_end_it_as_any_motion() {
             samples[from - 1].hitch.outputs.reference,
             Some(Reason::Engages)
         );
-        let angle_deg = samples[from].hitch.angle_deg;
-        let later = &samples[from + 50..];
-        let moved = later
-            .iter()
-            .map(|sample| (sample.hitch.angle_deg - angle_deg).abs())
-            .fold(0.0, f64::max);
-        println!("{name}: {moved:.2} degrees");
-        // With its function a hitch brakes from full speed as at a set point, as long as its coil is on.
-        let most = if state.is_some() { 3.0 } else { 8.0 };
-        assert!(moved <= most, "{name}: {moved} degrees");
+        let Motion {
+            whole_deg,
+            beyond_deg,
+        } = Motion::of(&samples, &healthy, from);
+        println!("{name}: {beyond_deg:.2} of {whole_deg:.2} degrees");
+        assert!(beyond_deg <= 3.0, "{name}: {beyond_deg} degrees");
+        // What cuts the coil ends the motion itself.
+        assert!(
+            state.is_none() || whole_deg <= 3.0,
+            "{name}: {whole_deg} degrees"
+        );
         let last = samples.last().unwrap().hitch.outputs;
         match state {
             Some(state) => assert_eq!(last.state, state, "{name}"),

@@ -1,5 +1,6 @@
 //! Tests of the controller in closed loop with a plant.
 
+mod beyond;
 mod closed_loop;
 mod current;
 mod depth;
