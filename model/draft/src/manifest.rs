@@ -55,9 +55,12 @@ impl Campaign {
     /// # Errors
     /// The first fault, with file, line and column.
     pub fn load(dir: &Path) -> Result<Self, InputError> {
+        let hint = "a draft campaign is a folder with campaign.toml and a log per run";
+        if !dir.is_dir() {
+            return Err(InputError::of_file(dir, "no such folder", hint));
+        }
         let path = dir.join("campaign.toml");
         if !path.is_file() {
-            let hint = "a draft campaign is a folder with campaign.toml and a log per run";
             return Err(InputError::of_file(dir, "contains no campaign.toml", hint));
         }
         let source = SourceFile::read(&path)?;

@@ -64,25 +64,57 @@ fn fitted(truth: &Truth, seed: u64) -> Fit {
     fit(&truth.machine, &runs(truth, &passes(), seed)).expect("there are blocks in the soil")
 }
 
-/// Share of truths inside the 95 % intervals, within what is likely for this number.
-fn assert_coverage(inside: usize, of: usize, what: &str) {
-    let share = inside as f64 / of as f64;
-    println!("{what}: {inside} of {of} inside, {:.1} %", 100.0 * share);
-    let deviation = (0.95 * 0.05 / of as f64).sqrt();
-    assert!(share > 0.95 - 3.0 * deviation - 0.02, "{what}: {share}");
+/// Refuses a share of truths inside the 95 % intervals that is below `least` by more than chance.
+fn assert_coverage(inside: &[usize; 4], of: u64, least: f64) {
+    let deviation = (least * (1.0 - least) / of as f64).sqrt();
+    for inside in inside {
+        let share = *inside as f64 / of as f64;
+        assert!(share > least - 3.0 * deviation, "{share} of {of}");
+    }
 }
 
-/// Coverage over campaigns whose hidden effects are chosen by `hidden`.
-fn coverage(what: &str, seed: u64, hidden: impl Fn(&mut Noise, usize) -> bool) {
+/// What is hidden in the campaigns of a coverage.
+#[derive(Clone, Copy, PartialEq)]
+enum Drawn {
+    /// Nothing.
+    Nothing,
+    /// Each effect with a probability of 0.5, and its size by its prior.
+    ByPrior,
+    /// The same with the sizes of [`hide`], which has no small ones.
+    Large,
+}
+
+/// Hides each effect with a probability of 0.5, with a size by its prior.
+fn hide_by_prior(truth: &mut Truth, noise: &mut Noise) {
+    let mut size = |mean: f64, deviation: f64| {
+        let (is_present, size) = (noise.uniform() < 0.5, mean + deviation * noise.normal());
+        if is_present { size } else { 0.0 }
+    };
+    let usual = at_speed(&truth.machine.standard(), 6.5);
+    truth.draft_zero_n = size(0.0, 2000.0);
+    truth.depth_zero_m = size(0.0, 0.02);
+    truth.blunt_n = size(0.2, 0.1) * usual * 21.0;
+    let track = size(0.3, 0.1);
+    truth.track = Some((1 + (12.0 * noise.uniform()) as usize, track));
+}
+
+/// Numbers of truths inside the intervals of the three coefficients and of the draft at the mean speed, and of campaigns.
+fn coverage(what: &str, seed: u64, drawn: Drawn) -> ([usize; 4], u64) {
     let count = cases(10, 200);
     let mut inside = [0; 4];
     let mut width = 0.0;
     for seed in seed..seed + count {
         let mut truth = machine(seed);
         let mut noise = Noise::new(seed, 97);
-        for effect in 1..HIDDEN.len() {
-            if hidden(&mut noise, effect) {
-                hide(&mut truth, effect, seed);
+        match drawn {
+            Drawn::Nothing => {}
+            Drawn::ByPrior => hide_by_prior(&mut truth, &mut noise),
+            Drawn::Large => {
+                for effect in 1..HIDDEN.len() {
+                    if noise.uniform() < 0.5 {
+                        hide(&mut truth, effect, seed);
+                    }
+                }
             }
         }
         let fit = fitted(&truth, seed);
@@ -90,9 +122,9 @@ fn coverage(what: &str, seed: u64, hidden: impl Fn(&mut Noise, usize) -> bool) {
         let level = fit.specific_draft(speed);
         let is_inside =
             |[low, high]: [f64; 2], value: f64| usize::from(low <= value && value <= high);
-        for power in 0..3 {
+        for (power, inside) in inside.iter_mut().enumerate().take(3) {
             let interval = fit.coefficients[power].interval();
-            inside[power] += is_inside(interval, truth.coefficients[power]);
+            *inside += is_inside(interval, truth.coefficients[power]);
         }
         inside[3] += is_inside(level.interval(), at_speed(&truth.coefficients, speed));
         width += level.deviation * 1.96 / level.mean;
@@ -103,20 +135,29 @@ fn coverage(what: &str, seed: u64, hidden: impl Fn(&mut Noise, usize) -> bool) {
     );
     let names = ["F A", "F B", "F C", "draft at the mean speed"];
     for (name, inside) in names.iter().zip(inside) {
-        assert_coverage(inside, count as usize, &format!("{what}, {name}"));
+        println!("{what}, {name}: {inside} of {count} inside");
     }
+    (inside, count)
 }
 
 #[test]
-fn intervals_contain_the_truth_with_effects_as_often_as_expected() {
-    coverage("effects of probability 0.5", SEED + 20_000, |noise, _| {
-        noise.uniform() < 0.5
-    });
+fn intervals_contain_the_truth_with_effects_as_expected() {
+    let (inside, of) = coverage("effects by their priors", SEED + 20_000, Drawn::ByPrior);
+    assert_coverage(&inside, of, 0.95);
 }
 
 #[test]
 fn intervals_contain_the_truth_without_effects() {
-    coverage("no effects", SEED, |_, _| false);
+    // The mean over models has a part of effects that are absent here, most of which raise the draft.
+    let (inside, of) = coverage("no effects", SEED, Drawn::Nothing);
+    assert_coverage(&inside, of, 0.92);
+}
+
+#[test]
+fn intervals_contain_most_truths_with_large_effects() {
+    // A depth zero of 2 to 4 cm is one to two deviations of its prior in every campaign.
+    let (inside, of) = coverage("large effects", SEED + 20_000, Drawn::Large);
+    assert_coverage(&inside, of, 0.85);
 }
 
 /// An effect that is hidden in a campaign.
