@@ -20,6 +20,7 @@ pub mod carried;
 mod dynamics;
 mod effect_size;
 mod holding;
+pub mod working;
 
 /// Tolerance of a valve table relative to the surveyed curve, A.
 const TOLERANCE_A: f64 = 0.5e-3;

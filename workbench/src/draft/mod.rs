@@ -2,6 +2,7 @@
 mod effects;
 mod example;
 mod show;
+mod working;
 
 use hitch_draft::fit::{Estimated, Fit};
 use hitch_draft::machine::{at_speed, texture_name};
@@ -11,6 +12,7 @@ use serde::Serialize;
 
 pub use effects::{HiddenEffect, Open};
 pub use example::write_example;
+pub use working::read_working;
 
 /// Result of `hitch draft`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
