@@ -6,7 +6,7 @@ use hitch_draft::term::Term;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Interval;
+use super::interval::Interval;
 
 /// An effect that the law of draft lacks.
 #[derive(Debug, Clone, Serialize, JsonSchema)]

@@ -1,10 +1,11 @@
 //! The result of a draft campaign: as text and JSON.
 mod effects;
 mod example;
+mod interval;
 mod show;
 mod working;
 
-use hitch_draft::fit::{Estimated, Fit};
+use hitch_draft::fit::Fit;
 use hitch_draft::machine::{at_speed, texture_name};
 use hitch_draft::manifest::Campaign;
 use schemars::JsonSchema;
@@ -12,6 +13,7 @@ use serde::Serialize;
 
 pub use effects::{HiddenEffect, Open};
 pub use example::write_example;
+pub use interval::Interval;
 pub use working::read_working;
 
 /// Result of `hitch draft`.
@@ -69,17 +71,6 @@ pub struct Coefficient {
     pub value: Interval,
 }
 
-/// A value with its 95 % interval.
-#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-pub struct Interval {
-    /// Mean.
-    pub value: f64,
-    /// Lower end of the 95 % interval.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-}
-
 /// How the strength of the soil varies.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct SoilVariation {
@@ -91,27 +82,6 @@ pub struct SoilVariation {
     pub metres: usize,
     /// Number of independent samples that determine the level of the draft as well as these metres.
     pub effective_samples: f64,
-}
-
-impl From<Estimated> for Interval {
-    fn from(estimated: Estimated) -> Self {
-        let [low, high] = estimated.interval();
-        Self {
-            value: estimated.mean,
-            low,
-            high,
-        }
-    }
-}
-
-impl Interval {
-    fn times(self, factor: f64) -> Self {
-        Self {
-            value: factor * self.value,
-            low: factor * self.low,
-            high: factor * self.high,
-        }
-    }
 }
 
 impl DraftResult {
