@@ -53,6 +53,8 @@ pub struct Block {
 
 /// Length of a block in the soil, m.
 const BLOCK_M: f64 = 1.0;
+/// Way to both sides over which the depth is averaged, m.
+const SMOOTH_M: f64 = 5.0;
 /// Duration of a block above the soil, s.
 const BLOCK_S: f64 = 1.0;
 /// Parts of the usual depth of a run at which work begins and ends.
@@ -102,7 +104,25 @@ pub fn blocks(run: &Run, index: usize) -> Vec<Block> {
         }
     }
     blocks.extend(open.map(|done| done.block(index)));
+    smooth_depths(&mut blocks);
     blocks
+}
+
+/// Takes the depths in the soil from the means over [`SMOOTH_M`] to both sides. Noise of the depth between neighbouring blocks
+/// would pass for changes of the depth that the draft does not follow: a draft that depends less on the depth, with an intercept.
+/// A mean over a longer way misses true changes instead, which widens the scatter and leaves the slope.
+fn smooth_depths(blocks: &mut [Block]) {
+    let read: Vec<Block> = blocks.to_vec();
+    for block in blocks.iter_mut().filter(|block| block.in_soil) {
+        let is_near = |other: &&Block| other.in_soil && (other.at_m - block.at_m).abs() <= SMOOTH_M;
+        let near = read.iter().filter(is_near);
+        let (sum, count) = near.fold((0.0, 0.0), |(sum, count), other| {
+            let samples = other.samples as f64;
+            (sum + samples * other.depth_cm, count + samples)
+        });
+        block.depth_cm = sum / count;
+        block.depth_speeds = block.speeds.map(|speed| block.depth_cm * speed);
+    }
 }
 
 /// Median of the depths in the soil, m; `None` for a run above it.
