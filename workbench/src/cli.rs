@@ -2,9 +2,9 @@
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
-    add, adopt, calibrate, changes, compare, completions, controller, diagnose, ecu, effects,
-    explain, export_fmu, flash_calibration, import, loop_, main_job, man, model, record, schema,
-    serve, simulate, summary, tune,
+    add, adopt, calibrate, changes, compare, completions, controller, diagnose, draft, ecu,
+    effects, explain, export_fmu, flash_calibration, import, loop_, main_job, man, model, record,
+    schema, serve, simulate, summary, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -37,6 +37,8 @@ pub enum Command {
     Adopt(adopt::Args),
     /// Compare two campaigns of a machine, or of two machines of a series
     Changes(changes::Args),
+    /// Fit an implement and its soil to a draft campaign, and find hidden effects: sensor zeros, blunt shares, wheel tracks
+    Draft(draft::Args),
     /// Summarise the lines of many campaigns: machine by effect, and which machines differ
     Summary(summary::Args),
     /// Show campaign and model in the browser (local only): compare, rank and add effects
@@ -94,6 +96,7 @@ impl Command {
             Self::Loop(args) => loop_::run(args),
             Self::Controller(args) => controller::run(args),
             Self::ExportFmu(args) => export_fmu::run(args),
+            Self::Draft(args) => draft::run(args),
             Self::Ecu(args) => ecu::run(args),
             Self::FlashCalibration(args) => flash_calibration::run(args),
             Self::Record(args) => record::run(args),

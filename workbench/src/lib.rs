@@ -1,7 +1,7 @@
 //! Library of the program `hitch`.
 //!
 //! A command ([`commands`], named in [`cli`]) reads a campaign ([`import`], [`arguments`]), has it compared ([`comparison::Comparison`]),
-//! explained ([`explanation::Found`]) or driven ([`closed_loop::LoopRun`], [`field_loop`], [`ecu`]), and shows the result as text and
+//! explained ([`explanation::Found`]) or driven ([`closed_loop::LoopRun`], [`field_loop`], [`ecu`]), or a field fitted ([`mod@draft`]), and shows the result as text and
 //! JSON ([`output::Document`]), as a file ([`report`]) or as a page ([`serve`]).
 #![forbid(unsafe_code)]
 
@@ -11,6 +11,7 @@ pub mod cli;
 pub mod closed_loop;
 pub mod commands;
 pub mod comparison;
+pub mod draft;
 pub mod ecu;
 pub mod error;
 pub mod explanation;

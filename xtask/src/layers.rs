@@ -22,7 +22,7 @@ struct Layers {
 }
 
 /// The checked crates; add an entry for a new one.
-const CRATES: [Layers; 11] = [
+const CRATES: [Layers; 12] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -85,6 +85,20 @@ const CRATES: [Layers; 11] = [
         ],
     },
     Layers {
+        sources: "model/draft/src",
+        order: &[
+            &["machine", "block"],
+            &["log"],
+            &["manifest"],
+            &["term"],
+            &["whitening"],
+            &["evidence"],
+            &["next_run"],
+            &["fit"],
+            &["simulated"],
+        ],
+    },
+    Layers {
         sources: "model/identification/src",
         order: &[
             &["data", "constants"],
@@ -134,6 +148,7 @@ const CRATES: [Layers; 11] = [
             &[
                 "closed_loop",
                 "comparison",
+                "draft",
                 "explanation",
                 "fleet_summary",
                 "fmu_export",

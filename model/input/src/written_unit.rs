@@ -24,6 +24,8 @@ const SPELLINGS: &[(&str, &[&str])] = &[
     ("h", &["hours", "stunden"]),
     ("ms", &["msec", "millisekunden"]),
     ("us", &["usec"]),
+    ("km/h", &["km/h", "kmh", "kph"]),
+    ("kN", &["kn"]),
     ("d", &["day", "days", "tage", "datenum"]),
     ("%", &["percent", "prozent"]),
 ];
@@ -41,6 +43,8 @@ const MULTIPLES: &[(&str, f64, &str)] = &[
     ("µs", 1e-6, "s"),
     ("ns", 1e-9, "s"),
     ("h", 3_600.0, "s"),
+    ("km/h", 1.0 / 3.6, "m/s"),
+    ("mph", 0.447_04, "m/s"),
     ("d", 86_400.0, "s"),
 ];
 

@@ -20,6 +20,7 @@ pub mod carried;
 mod dynamics;
 mod effect_size;
 mod holding;
+pub mod working;
 
 /// Tolerance of a valve table relative to the surveyed curve, A.
 const TOLERANCE_A: f64 = 0.5e-3;
@@ -70,7 +71,7 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     let mut calibration = base.clone();
     for (name, valve, table) in [
         ("lift", Valve::Lift, &mut calibration.lift),
-        ("lower", Valve::Lower, &mut calibration.lower),
+        ("lower", Valve::Lowering, &mut calibration.lower),
     ] {
         *table = valve_table(&survey(model, valve)).ok_or_else(|| CalibrateError::Shut {
             valve: name,

@@ -7,10 +7,12 @@ use hitch_quantities::Calibration;
 use hitch_quantities::calibration::valve_table::ValveTable;
 
 use super::loop_::read_files;
+use crate::draft::read_working;
 use crate::error::Error;
 use crate::output;
 use crate::output::targets::Outputs;
 use crate::text::indented;
+use hitch_closed_loop::calibrate::working::with_draft;
 use hitch_closed_loop::calibrate::{calibrate, carried};
 
 /// Arguments of `hitch calibrate`.
@@ -26,22 +28,36 @@ pub struct Args {
     /// Calibration with the remaining values (gains, ramps, limits); without this option, the nominal one
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
+    /// Document that `hitch draft --json` wrote: the implement's draft sets values of draft and depth control
+    #[arg(long, value_name = "DRAFT.json")]
+    draft: Option<PathBuf>,
 }
+
+/// What of draft and depth control does not follow from an implement.
+const NOT_FROM_A_DRAFT: &str = "zeros and spans of pins and depth sensor are taught; draft.length is the implement's own; filters, dead bands \
+     and steps stay as they are, `hitch tune --scenario draft` searches them";
 
 /// Runs the command.
 ///
 /// # Errors
 /// If the model or the calibration is invalid, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    let inputs = read_files(&args.model, args.calibration.as_ref());
+    let mut inputs = read_files(&args.model, args.calibration.as_ref());
+    inputs.extend(args.draft.clone());
     let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
     let model = hitch_model_file::named(&args.model)?;
     let base = match &args.calibration {
         Some(path) => (*calibration_file::read(path)?).clone(),
         None => Calibration::nominal(),
     };
-    let calibration = calibrate(&model, &base)
-        .map_err(|error| Error::Usage(format!("{}: {error}", args.model)))?;
+    let refused = |error| Error::Usage(format!("{}: {error}", args.model));
+    let mut calibration = calibrate(&model, &base).map_err(refused)?;
+    let mut of_draft = Vec::new();
+    if let Some(path) = &args.draft {
+        (calibration, of_draft) =
+            with_draft(&model, &calibration, &read_working(path)?).map_err(refused)?;
+        of_draft.push(NOT_FROM_A_DRAFT.to_owned());
+    }
     output::write_file(&args.out, calibration_file::write(&calibration).as_bytes())?;
     let mut text = format!("{} -> {}\n", model.name, args.out.display());
     for (name, table, before) in [
@@ -51,7 +67,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
         let line = format!("{name}: {} (was {})", described(table), described(before));
         text += &format!("{}\n", indented(&line, 2));
     }
-    for line in carried::lines(&model, &base, &calibration) {
+    for line in carried::lines(&model, &base, &calibration)
+        .into_iter()
+        .chain(of_draft)
+    {
         text += &format!("{}\n", indented(&line, 2));
     }
     outputs.say(|| text)

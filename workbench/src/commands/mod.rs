@@ -7,6 +7,7 @@ pub mod compare;
 pub mod completions;
 pub mod controller;
 pub mod diagnose;
+pub mod draft;
 pub mod ecu;
 pub mod effects;
 pub mod explain;

@@ -8,6 +8,7 @@ use crate::commands::fleet::Line;
 use crate::commands::tune_result::Tuned;
 use crate::commands::{changes, effects, loop_};
 use crate::comparison::Comparison;
+use crate::draft::DraftResult;
 use crate::error::Error;
 use crate::explanation::{Diagnosis, Explanation};
 use crate::fleet_summary::FleetSummary;
@@ -17,12 +18,13 @@ use crate::output::{self, Document};
 type MakeSchema = fn() -> Schema;
 
 /// Commands with the option `--json`, and the schema of their document.
-const DOCUMENTS: [(&str, MakeSchema); 10] = [
+const DOCUMENTS: [(&str, MakeSchema); 11] = [
     ("compare", schema::<Comparison>),
     ("diagnose", schema::<Diagnosis>),
     ("explain", schema::<Explanation>),
     ("adopt", schema::<Explanation>),
     ("changes", schema::<changes::Changes>),
+    ("draft", schema::<DraftResult>),
     ("summary", schema::<FleetSummary>),
     ("model fit", schema::<ShownBaseFit>),
     ("loop", schema::<loop_::Driven<'static>>),

@@ -6,6 +6,7 @@ mod columns;
 pub mod comparison_page;
 mod data;
 pub mod diagnosis_page;
+pub mod draft_page;
 mod drawn;
 mod envelope;
 pub mod error_map;

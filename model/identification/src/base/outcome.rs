@@ -1,6 +1,7 @@
 //! The fit of the base model, and which constants it determined.
 
-use hitch_plant::{Model, Valve};
+use hitch_model_file::Valve;
+use hitch_plant::Model;
 use nalgebra::{DMatrix, DVector};
 
 use crate::base::descent::descend;

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use hitch_campaign::{Bench, Run};
-use hitch_plant::{Channel, Currents, Model, Valve};
+use hitch_model_file::Valve;
+use hitch_plant::{Channel, Currents, Model};
 
 use crate::data::experiment::Experiment;
 use crate::data::ready_run::ReadyRun;
