@@ -309,14 +309,17 @@ impl Conversion {
 
     /// A ratiometric signal; `None` if its wire is broken or shorted.
     fn ratio(&self, code: AdcCode) -> Option<Ratio> {
-        self.healthy(code).map(|share| Ratio(share - SUPPLY / 10))
+        self.healthy(code)
+            .map(|share| Ratio(share.saturating_sub(SUPPLY / 10)))
     }
 
     /// Output of a sensor whose zero and span are calibrated; `None` if its wire is broken or shorted.
     fn share(&self, code: AdcCode) -> Option<SupplyShare> {
         let share = self.healthy(code)?;
         // 100 000 are the supply.
-        Some(SupplyShare((share * 625 + 128) >> 8))
+        Some(SupplyShare(
+            share.saturating_mul(625).saturating_add(128) >> 8,
+        ))
     }
 
     /// The share of the sensor supply in parts of [`SUPPLY`], if it is within the limits of a healthy wire.
