@@ -29,6 +29,7 @@ use super::hardware::{Contacts, FlashRegions, Hardware};
 use super::panel::Contact;
 use super::scaling::BoardScaling;
 use super::service::{Service, Storing};
+use super::set_points::with_set_points;
 use super::start_check::StartCheck;
 use super::status::status;
 use super::task_sequence_monitor::{Kick, Task, TaskSequenceMonitor};
@@ -173,9 +174,11 @@ impl<F: NorFlash> Ecu<F> {
     }
 
     fn sample(&mut self, contacts: &Contacts) {
-        let mut inputs = contacts
-            .panel
-            .added_to(self.conversion.inputs(&contacts.samples));
+        let samples = &contacts.samples;
+        let inputs = self.conversion.inputs(samples);
+        let dial = self.conversion.set_point_dial(samples);
+        let mut inputs = with_set_points(inputs, dial, self.controller.calibration());
+        inputs = contacts.panel.added_to(inputs);
         inputs.step_time = self.tick_timer.begin(contacts.clock_us);
         inputs.clock_ratio = contacts.clock_ratio;
         inputs.engine_speed = self.node.engine_speed(self.tick_timer.now_ms());

@@ -7,7 +7,7 @@
 //! in the calibration's linkage.
 
 use hitch_quantities::Inputs;
-use hitch_quantities::units::{MilliAmp, MilliBar, MilliDegree, MilliVolt, PerMille};
+use hitch_quantities::units::{MilliAmp, MilliBar, MilliDegree, MilliVolt, PerMille, SupplyShare};
 
 use super::adc_code::AdcCode;
 use super::scaling::BoardScaling;
@@ -74,6 +74,16 @@ pub enum Signal {
     SensorSupply,
     /// [`Samples::reference`].
     Reference,
+    /// [`Samples::left_pin`].
+    LeftPin,
+    /// [`Samples::right_pin`].
+    RightPin,
+    /// [`Samples::depth_sensor`].
+    DepthSensor,
+    /// [`Samples::mix_dial`].
+    MixDial,
+    /// [`Samples::set_point_dial`].
+    SetPointDial,
 }
 
 /// Codes of all converters in a millisecond.
@@ -103,11 +113,21 @@ pub struct Samples {
     pub sensor_supply: AdcCode,
     /// Internal band gap: its code falls when the converters' reference rises.
     pub reference: AdcCode,
+    /// Left draft pin.
+    pub left_pin: AdcCode,
+    /// Right draft pin.
+    pub right_pin: AdcCode,
+    /// External depth sensor.
+    pub depth_sensor: AdcCode,
+    /// Mix dial.
+    pub mix_dial: AdcCode,
+    /// Dial of the set point of draft or depth.
+    pub set_point_dial: AdcCode,
 }
 
 impl Samples {
     /// Number of converter channels.
-    pub const CHANNELS: usize = 12;
+    pub const CHANNELS: usize = 17;
 
     /// The codes in the order of the fields.
     #[must_use]
@@ -125,6 +145,11 @@ impl Samples {
             self.second_angle,
             self.sensor_supply,
             self.reference,
+            self.left_pin,
+            self.right_pin,
+            self.depth_sensor,
+            self.mix_dial,
+            self.set_point_dial,
         ]
     }
 
@@ -144,6 +169,11 @@ impl Samples {
             second_angle,
             sensor_supply,
             reference,
+            left_pin,
+            right_pin,
+            depth_sensor,
+            mix_dial,
+            set_point_dial,
         ] = codes;
         Self {
             rocker_angle,
@@ -158,6 +188,11 @@ impl Samples {
             second_angle,
             sensor_supply,
             reference,
+            left_pin,
+            right_pin,
+            depth_sensor,
+            mix_dial,
+            set_point_dial,
         }
     }
 }
@@ -222,8 +257,18 @@ impl Conversion {
             lower_current: Some(current(samples.lower_current)),
             sensor_supply: Some(MilliVolt(sensor_supply)),
             reference: Some(self.reference(samples.reference)),
+            left_pin: self.share(samples.left_pin),
+            right_pin: self.share(samples.right_pin),
+            depth_sensor: self.share(samples.depth_sensor),
+            mix: ratio(samples.mix_dial).map(Ratio::dial),
             ..Inputs::default()
         }
+    }
+
+    /// Position of the dial of the set point of draft or depth; `None` if its wire is broken or shorted.
+    #[must_use]
+    pub fn set_point_dial(&self, samples: &Samples) -> Option<PerMille> {
+        self.ratio(samples.set_point_dial).map(Ratio::dial)
     }
 
     /// The converters' reference by the band gap, per mille of its nominal value; 0 without band gap.
@@ -264,16 +309,31 @@ impl Conversion {
 
     /// A ratiometric signal; `None` if its wire is broken or shorted.
     fn ratio(&self, code: AdcCode) -> Option<Ratio> {
+        self.healthy(code)
+            .map(|share| Ratio(share.saturating_sub(SUPPLY / 10)))
+    }
+
+    /// Output of a sensor whose zero and span are calibrated; `None` if its wire is broken or shorted.
+    fn share(&self, code: AdcCode) -> Option<SupplyShare> {
+        let share = self.healthy(code)?;
+        // 100 000 are the supply.
+        Some(SupplyShare(
+            share.saturating_mul(625).saturating_add(128) >> 8,
+        ))
+    }
+
+    /// The share of the sensor supply in parts of [`SUPPLY`], if it is within the limits of a healthy wire.
+    fn healthy(&self, code: AdcCode) -> Option<i32> {
         let product = u64::from(code.get()) * u64::from(self.signal_factor);
         let share = i32::try_from(product >> 16).unwrap_or(i32::MAX);
-        let part = |limit: PerMille| limit.0.clamp(0, 1_000) * 40_960 / 1_000;
+        let part = |limit: PerMille| limit.0.clamp(0, 1_000) * SUPPLY / 1_000;
         let healthy = part(self.scaling.wire_min)..=part(self.scaling.wire_max);
-        healthy
-            .contains(&share)
-            .then(|| Ratio(share.saturating_sub(4_096)))
+        healthy.contains(&share).then_some(share)
     }
 }
 
+/// The sensor supply in the unit of a ratiometric signal.
+const SUPPLY: i32 = 40_960;
 /// Nominal supply of the sensors.
 const NOMINAL_SENSOR_SUPPLY: MilliVolt = MilliVolt(5_000);
 
@@ -319,6 +379,24 @@ mod tests {
         }
         for broken in [0.2, 4.8] {
             assert_eq!(inputs(&samples(broken, 5.0, 1.0)).rocker_angle, None);
+        }
+    }
+
+    #[test]
+    fn a_pin_is_its_share_of_the_sensor_supply_and_a_broken_wire_is_none() {
+        // One code is 24 parts of 100 000.
+        for (supply, share) in [(5.0, 0.5), (4.6, 0.25), (5.3, 0.75), (5.0, 0.9)] {
+            let found = inputs(&samples(share * supply, supply, 1.0));
+            for output in [found.left_pin, found.right_pin, found.depth_sensor] {
+                let off = f64::from(output.unwrap().0) * 1e-5 - share;
+                assert!(off.abs() < 6e-4, "{share} of {supply} V: {off} more");
+            }
+        }
+        for broken in [0.2, 4.8] {
+            let found = inputs(&samples(broken, 5.0, 1.0));
+            let outputs = [found.left_pin, found.right_pin, found.depth_sensor];
+            assert_eq!(outputs, [None; 3]);
+            assert_eq!(found.mix, None);
         }
     }
 
@@ -413,6 +491,11 @@ mod tests {
             (Signal::SecondAngle, Samples { second_angle: CODE, ..none }),
             (Signal::SensorSupply, Samples { sensor_supply: CODE, ..none }),
             (Signal::Reference, Samples { reference: CODE, ..none }),
+            (Signal::LeftPin, Samples { left_pin: CODE, ..none }),
+            (Signal::RightPin, Samples { right_pin: CODE, ..none }),
+            (Signal::DepthSensor, Samples { depth_sensor: CODE, ..none }),
+            (Signal::MixDial, Samples { mix_dial: CODE, ..none }),
+            (Signal::SetPointDial, Samples { set_point_dial: CODE, ..none }),
         ];
         assert_eq!(samples.len(), Samples::CHANNELS);
         for (signal, expected) in samples {

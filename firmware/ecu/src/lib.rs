@@ -10,7 +10,7 @@
 //! It may depend on all other crates of the firmware, and none of them on it. It is pure code on a [`Hardware`]
 //! interface, which board, emulator and tests implement, so the same code has the same behaviour on all three.
 //!
-//! * `converter`, `scaling`, `panel`, `panel_inputs`: from codes and contacts to inputs,
+//! * `converter`, `scaling`, `set_points`, `panel`, `panel_inputs`: from codes and contacts to inputs,
 //! * `coil_driver`, `drive`, `enable_line`: from pulse widths to pins,
 //! * `can_port`: the bus by a driver of `embedded-can`,
 //! * `arbiter`, `status`: commands of an implement, and status to it,
@@ -43,6 +43,7 @@ mod panel;
 mod panel_inputs;
 mod scaling;
 mod service;
+mod set_points;
 mod start_check;
 mod status;
 mod task_sequence_monitor;

@@ -1,7 +1,7 @@
 //! A millisecond of the ECU as bytes, for a host that runs it through a pipe or a file.
 //!
 //! ```text
-//! request  codes of twelve channels  panel  kind  frames  enable  0  clock ratio  clock   frames
+//! request  codes of all channels     panel  kind  frames  enable  0  clock ratio  clock   frames
 //!          2 each                    2      1     1       1       1  2            4 us    16 each
 //! reply    lift  lower  enable  kicked  state  fault  trip  frames  target  lift  lower  frames
 //!          2     2      1       1       1      1      1     1       4 mdeg  2 mA  2 mA   16 each

@@ -1,7 +1,7 @@
 //! The operator's buttons and switches as contacts.
 
-use hitch_quantities::units::MilliDegreePerSecond;
-use hitch_quantities::{Inputs, Switches};
+use hitch_quantities::units::{Count, MilliDegreePerSecond};
+use hitch_quantities::{Function, Inputs, Switches};
 
 /// Contacts of buttons and switches. They close to ground, so that a broken wire reads as open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,11 +29,22 @@ pub enum Contact {
     UpReleased = 1 << 7,
     /// The same of the button down.
     DownReleased = 1 << 8,
+    /// Quick engagement, closed as long as it is held. Open, by hand or by a broken wire, it does not lower.
+    Engage = 1 << 9,
+    /// Selector of the function: draft. With none of its contacts closed, by hand or by a broken wire, or with more than
+    /// one, the lever is the position.
+    Draft = 1 << 10,
+    /// Selector: mix.
+    Mix = 1 << 11,
+    /// Selector: depth limit.
+    DepthLimit = 1 << 12,
+    /// Selector: depth.
+    Depth = 1 << 13,
 }
 
 impl Panel {
     /// Contacts in the order of their bits.
-    pub const CONTACTS: [Contact; 9] = [
+    pub const CONTACTS: [Contact; 14] = [
         Contact::Up,
         Contact::Down,
         Contact::FieldMode,
@@ -43,6 +54,11 @@ impl Panel {
         Contact::Consent,
         Contact::UpReleased,
         Contact::DownReleased,
+        Contact::Engage,
+        Contact::Draft,
+        Contact::Mix,
+        Contact::DepthLimit,
+        Contact::Depth,
     ];
 
     /// A tractor in the field with nothing pressed.
@@ -52,7 +68,7 @@ impl Panel {
     /// The panel with these bits; bits without a contact are ignored.
     #[must_use]
     pub const fn from_bits(bits: u16) -> Self {
-        Self(bits & 0b1_1111_1111)
+        Self(bits & ((1 << Self::CONTACTS.len()) - 1))
     }
 
     /// One bit for each contact, set if it is closed.
@@ -97,6 +113,21 @@ impl Panel {
         }
     }
 
+    /// The function whose contact is the only closed one of the selector.
+    const fn function(self) -> Function {
+        const DRAFT: u16 = Contact::Draft as u16;
+        const MIX: u16 = Contact::Mix as u16;
+        const DEPTH_LIMIT: u16 = Contact::DepthLimit as u16;
+        const DEPTH: u16 = Contact::Depth as u16;
+        match self.0 & (DRAFT | MIX | DEPTH_LIMIT | DEPTH) {
+            DRAFT => Function::Draft,
+            MIX => Function::Mix,
+            DEPTH_LIMIT => Function::DepthLimit,
+            DEPTH => Function::Depth,
+            _ => Function::Position,
+        }
+    }
+
     /// Adds the panel's state to the inputs of a step.
     #[must_use]
     pub fn added_to(self, inputs: Inputs) -> Inputs {
@@ -110,9 +141,9 @@ impl Panel {
                 consent: self.is_closed(Contact::Consent),
                 up_released: self.is_closed(Contact::UpReleased),
                 down_released: self.is_closed(Contact::DownReleased),
-                // No board has a contact of quick engagement.
-                engage: false,
+                engage: self.is_closed(Contact::Engage),
             },
+            function: Some(Count(self.function() as i32)),
             ..inputs
         }
     }
@@ -127,6 +158,37 @@ mod tests {
         let inputs = Panel::default().added_to(Inputs::default());
         assert!(inputs.switches.transport_lock);
         assert_eq!(inputs.jog, None);
+    }
+
+    #[test]
+    fn a_function_is_selected_by_its_contact_alone() {
+        let selected = |contacts: &[Contact]| {
+            let closed = |panel: Panel, contact: &Contact| panel.with(*contact, true);
+            let panel = contacts.iter().fold(Panel::FIELD, closed);
+            Function::from_code(panel.added_to(Inputs::default()).function)
+        };
+        let contacts = [
+            (Contact::Draft, Function::Draft),
+            (Contact::Mix, Function::Mix),
+            (Contact::DepthLimit, Function::DepthLimit),
+            (Contact::Depth, Function::Depth),
+        ];
+        assert_eq!(selected(&[]), Function::Position);
+        for (contact, function) in contacts {
+            assert_eq!(selected(&[contact]), function);
+            for (other, _) in contacts.into_iter().filter(|(other, _)| *other != contact) {
+                assert_eq!(selected(&[contact, other]), Function::Position);
+            }
+        }
+    }
+
+    #[test]
+    fn bits_go_round() {
+        for contact in Panel::CONTACTS {
+            let panel = Panel::default().with(contact, true);
+            assert_eq!(Panel::from_bits(panel.bits()), panel, "{contact:?}");
+        }
+        assert_eq!(Panel::from_bits(u16::MAX).bits().count_ones(), 14);
     }
 
     #[test]

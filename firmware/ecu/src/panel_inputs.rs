@@ -7,7 +7,7 @@ use super::panel::Panel;
 /// Number of contacts.
 const CONTACTS: usize = Panel::CONTACTS.len();
 
-/// Nine inputs with pull-up, in the order of [`Panel::CONTACTS`]; a closed contact is low.
+/// Inputs with pull-up, in the order of [`Panel::CONTACTS`]; a closed contact is low.
 #[derive(Debug)]
 pub struct PanelInputs<Pin>([Pin; CONTACTS]);
 

@@ -213,7 +213,7 @@ fn a_read_back_that_fails_differs_from_what_was_asked_for() {
 #[test]
 fn each_contact_closes_to_ground() {
     for (index, contact) in Panel::CONTACTS.into_iter().enumerate() {
-        let mut levels = [State::High; 9];
+        let mut levels = [State::High; Panel::CONTACTS.len()];
         levels[index] = State::Low;
         let mut inputs = PanelInputs::new(levels.map(|level| Digital::new(&[Level::get(level)])));
         assert_eq!(inputs.read(), Panel::default().with(contact, true));
@@ -224,17 +224,10 @@ fn each_contact_closes_to_ground() {
 #[test]
 fn a_contact_that_cannot_be_read_locks_the_hitch() {
     // Field mode is closed, and the contact behind it can't be read; those behind that are not asked any more.
-    let levels: [&[Level]; 9] = [
-        &[Level::get(State::High)],
-        &[Level::get(State::High)],
-        &[Level::get(State::Low)],
-        &[broken(Level::get(State::High))],
-        &[],
-        &[],
-        &[],
-        &[],
-        &[],
-    ];
+    let mut levels: [&[Level]; Panel::CONTACTS.len()] = [&[]; _];
+    let (high, low) = ([Level::get(State::High)], [Level::get(State::Low)]);
+    let unreadable = [broken(Level::get(State::High))];
+    levels[..4].copy_from_slice(&[&high, &high, &low, &unreadable]);
     let pins = levels.map(Digital::new);
     let mut inputs = PanelInputs::new(pins);
     let panel = inputs.read();

@@ -1,7 +1,8 @@
-//! The converters' injected sequences.
+//! The converters' injected sequences, and their regular conversions.
 
 use super::part::{Part, Pin};
 use super::registers::Registers;
+use super::regular::Regular;
 
 /// One converter.
 #[derive(Clone, Debug)]
@@ -16,6 +17,8 @@ pub struct Converter {
     /// The end of the sequence has not been cleared.
     finished: bool,
     calibrated_ns: f64,
+    /// Regular conversions.
+    pub regular: Regular,
     /// A trigger came while a sequence was still running.
     pub overran: bool,
 }
@@ -37,6 +40,7 @@ impl Converter {
             codes: [0; 4],
             finished: false,
             calibrated_ns: 0.0,
+            regular: Regular::new(),
             overran: false,
         }
     }
@@ -95,16 +99,55 @@ impl Converter {
     /// How long a sequence takes, ns.
     #[must_use]
     pub fn sequence_ns(&self, registers: &Registers, clock_hz: f64) -> f64 {
+        let channels = self.channels(registers);
+        channels
+            .iter()
+            .map(|&channel| self.conversion_ns(channel, registers, clock_hz))
+            .sum()
+    }
+
+    fn conversion_ns(&self, channel: u32, registers: &Registers, clock_hz: f64) -> f64 {
         let overhead = match self.part {
             Part::Stm32f405 => 12.0,
             Part::Stm32g474 => 12.5,
         };
-        let channels = self.channels(registers);
-        let cycles: f64 = channels
-            .iter()
-            .map(|&channel| self.sample_cycles(channel, registers) + overhead)
-            .sum();
-        cycles / clock_hz * 1e9
+        (self.sample_cycles(channel, registers) + overhead) / clock_hz * 1e9
+    }
+
+    /// Starts a regular conversion if the last write demands one; `share` gives a channel's share of the reference.
+    pub fn start_regular(
+        &mut self,
+        registers: &Registers,
+        clock_hz: f64,
+        now_ns: f64,
+        share: impl Fn(usize, u32) -> f64,
+    ) {
+        if !self.regular.take_demand() {
+            return;
+        }
+        let channel = self.regular_channel(registers);
+        let exact = share(self.number, channel) * CODES;
+        let code = exact.round().clamp(0.0, CODES - 1.0) as u32;
+        // A sequence that runs has priority.
+        let from_ns = self.done_ns.unwrap_or(now_ns).max(now_ns);
+        let duration_ns = self.conversion_ns(channel, registers, clock_hz);
+        self.regular.start(channel, code, from_ns, duration_ns);
+    }
+
+    /// The first channel of the regular sequence.
+    fn regular_channel(&self, registers: &Registers) -> u32 {
+        match self.part {
+            Part::Stm32f405 => registers.field(self.base + 0x34, 0, 5),
+            Part::Stm32g474 => registers.field(self.base + 0x30, 6, 5),
+        }
+    }
+
+    /// Number of further channels in the regular sequence.
+    fn regular_length(&self, registers: &Registers) -> u32 {
+        match self.part {
+            Part::Stm32f405 => registers.field(self.base + 0x2C, 20, 4),
+            Part::Stm32g474 => registers.field(self.base + 0x30, 0, 4),
+        }
     }
 
     /// Whether TIM1's trigger starts the sequence.
@@ -142,7 +185,9 @@ impl Converter {
             self.overran = true;
             return;
         }
-        self.done_ns = Some(now_ns + self.sequence_ns(registers, clock_hz));
+        let done_ns = now_ns + self.sequence_ns(registers, clock_hz);
+        self.done_ns = Some(done_ns);
+        self.regular.interrupt(done_ns);
         let channels = self.channels(registers);
         for (code, channel) in self.codes.iter_mut().zip(channels) {
             let exact = share(self.number, channel) * CODES;
@@ -155,6 +200,7 @@ impl Converter {
             self.done_ns = None;
             self.finished = true;
         }
+        self.regular.settle(now_ns);
     }
 
     /// Whether the end of the sequence has not been reached.
@@ -168,51 +214,98 @@ impl Converter {
         self.settle(now_ns);
         let stored = registers.get(self.base + offset);
         match (self.part, offset) {
-            (Part::Stm32f405, 0x00) => u32::from(self.finished) << 2,
+            (Part::Stm32f405, 0x00) => {
+                u32::from(self.finished) << 2 | u32::from(self.regular.has_ended()) << 1
+            }
+            (Part::Stm32f405, 0x4C) | (Part::Stm32g474, 0x40) => self.regular.take_code(),
             (Part::Stm32f405, 0x3C..=0x48) => self.codes[(offset as usize - 0x3C) / 4],
             (Part::Stm32g474, 0x00) => {
                 let ready = u32::from(registers.bit(self.base + 8, 0));
-                ready | u32::from(self.finished) << 6
+                let ended = u32::from(self.regular.has_ended());
+                ready | ended << 2 | u32::from(self.finished) << 6
             }
-            (Part::Stm32g474, 0x08) if now_ns >= self.calibrated_ns => stored & !(1 << 31),
+            (Part::Stm32g474, 0x08) => {
+                let calibrates = now_ns < self.calibrated_ns;
+                let running = u32::from(self.regular.is_running());
+                stored & !(1 << 31) | u32::from(calibrates) << 31 | running << 2
+            }
             (Part::Stm32g474, 0x80..=0x8C) => self.codes[(offset as usize - 0x80) / 4],
             _ => stored,
         }
     }
 
-    /// After a write at `offset`; returns its fault, if any.
+    /// After a write at `offset` to a register that held `before`; returns its fault, if any.
     pub fn written(
         &mut self,
         offset: u32,
+        (before, value): (u32, u32),
+        registers: &mut Registers,
+        now_ns: f64,
+    ) -> Option<String> {
+        self.settle(now_ns);
+        match (self.part, offset) {
+            // Writing zero clears on the one part, writing one on the other.
+            (Part::Stm32f405, 0x00) => {
+                self.finished &= value >> 2 & 1 == 1;
+                self.regular.keep_end(value >> 1 & 1 == 1);
+            }
+            (Part::Stm32f405, 0x08) if value >> 30 & 1 == 1 => {
+                // Hardware clears the bit when the conversion starts.
+                registers.set(self.base + 8, value & !(1 << 30));
+                self.regular.demand();
+                if value & 1 == 0 {
+                    return Some(self.fault("converts while it is off"));
+                }
+            }
+            // A sequence that changes is begun anew.
+            (Part::Stm32f405, 0x2C..=0x34) => self.regular.begin_anew(),
+            (Part::Stm32g474, 0x00) => {
+                self.finished &= value >> 6 & 1 == 0;
+                self.regular.keep_end(value >> 2 & 1 == 0);
+            }
+            (Part::Stm32g474, 0x30) if self.regular.is_running() => {
+                return Some(self.fault("gets another sequence while it converts"));
+            }
+            (Part::Stm32g474, 0x08) => return self.controlled(before, value, registers, now_ns),
+            _ => {}
+        }
+        None
+    }
+
+    /// After a write to the control register of the STM32G474.
+    fn controlled(
+        &mut self,
+        before: u32,
         value: u32,
         registers: &mut Registers,
         now_ns: f64,
     ) -> Option<String> {
-        match (self.part, offset) {
-            // Writing zero clears on the one part, writing one on the other.
-            (Part::Stm32f405, 0x00) if value >> 2 & 1 == 0 => self.finished = false,
-            (Part::Stm32g474, 0x00) if value >> 6 & 1 == 1 => self.finished = false,
-            (Part::Stm32g474, 0x08) => {
-                if value >> 31 == 1 {
-                    self.calibrated_ns = now_ns + 116.0 / 42e6 * 1e9;
-                    if value >> 28 & 1 == 0 || value & 1 == 1 {
-                        return Some(format!(
-                            "ADC{} is calibrated while it is on",
-                            self.number + 1
-                        ));
-                    }
-                }
-                if value & 1 == 1 && now_ns < self.calibrated_ns {
-                    return Some(format!(
-                        "ADC{} is enabled while it is calibrated",
-                        self.number + 1
-                    ));
-                }
-                registers.set(self.base + 8, value);
+        /// Enable and start bits: writing zero leaves them.
+        const KEPT: u32 = 0b1001;
+        /// Start of regular conversions.
+        const START: u32 = 1 << 2;
+        let kept = before & KEPT;
+        registers.set(self.base + 8, (value | kept) & !START);
+        if value >> 31 == 1 {
+            self.calibrated_ns = now_ns + 116.0 / 42e6 * 1e9;
+            if value >> 28 & 1 == 0 || (value | kept) & 1 == 1 {
+                return Some(self.fault("is calibrated while it is on"));
             }
-            _ => {}
+        }
+        if value & 1 == 1 && now_ns < self.calibrated_ns {
+            return Some(self.fault("is enabled while it is calibrated"));
+        }
+        if value & START != 0 && !self.regular.is_running() {
+            self.regular.demand();
+            if (value | kept) & 1 == 0 {
+                return Some(self.fault("converts while it is off"));
+            }
         }
         None
+    }
+
+    fn fault(&self, what: &str) -> String {
+        format!("ADC{} {what}", self.number + 1)
     }
 
     /// Faults of its initialisation.
@@ -235,8 +328,15 @@ impl Converter {
         if !self.is_armed(registers) {
             findings.push(format!("{name} isn't started by TIM1"));
         }
-        let channels = self.channels(registers);
-        for &channel in &channels {
+        let further = self.regular_length(registers);
+        if further != 0 {
+            findings.push(format!(
+                "a regular sequence of {name} has {} channels",
+                further + 1
+            ));
+        }
+        let injected = self.channels(registers);
+        for &channel in injected.iter().chain(&self.regular.channels) {
             match self.part.analog_pin(self.number, channel) {
                 Some(pin) if !is_analog(pin) => {
                     findings.push(format!("{pin}, a channel of {name}, isn't analogue"));

@@ -3,6 +3,7 @@
 
 use super::can;
 use super::chip::Chip;
+use super::layout::Layout;
 use super::part::{DBGMCU, Part, Pin, Port};
 
 /// Shortest and longest time that the watchdog may give, ns: a millisecond is kicked with room to spare, and coils are
@@ -116,10 +117,8 @@ fn pins(chip: &Chip) -> Vec<String> {
     if chip.mode(enable) != 1 {
         findings.push(format!("{enable}, the enable line, is no output"));
     }
-    let base = chip.part.addresses().gpio + 0x800;
-    for number in 4..13 {
-        let pin = Pin::new(Port::C, number);
-        if chip.mode(pin) != 0 || chip.registers.field(base + 0x0C, 2 * number, 2) != 1 {
+    for pin in Layout::contact_pins() {
+        if chip.mode(pin) != 0 || !chip.is_pulled_up(pin) {
             findings.push(format!("{pin}, a contact, isn't pulled up"));
         }
     }

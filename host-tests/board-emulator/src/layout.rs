@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use anyhow::{Error, bail};
-use hitch_ecu::{BoardScaling, Samples};
+use hitch_ecu::{BoardScaling, Panel, Samples};
 use hitch_quantities::units::MilliVolt;
 
 use super::part::{Part, Pin, Port};
@@ -64,9 +64,9 @@ impl Layout {
         const fn c(number: u32) -> Option<Pin> {
             Some(Pin::new(Port::C, number))
         }
-        let (pump, sensor_supply) = match self {
-            Self::Stm32f405 => (c(3), a(4)),
-            Self::Stm32g474 | Self::NucleoG474re => (b(1), b(13)),
+        let (pump, sensor_supply, depth_sensor) = match self {
+            Self::Stm32f405 => (c(3), a(4), b(1)),
+            Self::Stm32g474 | Self::NucleoG474re => (b(1), b(13), b(15)),
         };
         let (upper_limit, lift_current) = match self {
             Self::Stm32f405 | Self::Stm32g474 => (a(3), a(2)),
@@ -85,6 +85,32 @@ impl Layout {
             a(5),
             sensor_supply,
             None,
+            a(6),
+            a(7),
+            depth_sensor,
+            c(4),
+            c(5),
+        ]
+    }
+
+    /// The pins of the contacts, in the order of [`Panel::CONTACTS`].
+    #[must_use]
+    pub const fn contact_pins() -> [Pin; Panel::CONTACTS.len()] {
+        [
+            Pin::new(Port::C, 6),
+            Pin::new(Port::C, 7),
+            Pin::new(Port::C, 8),
+            Pin::new(Port::C, 9),
+            Pin::new(Port::C, 10),
+            Pin::new(Port::C, 11),
+            Pin::new(Port::C, 12),
+            Pin::new(Port::B, 12),
+            Pin::new(Port::B, 14),
+            Pin::new(Port::B, 5),
+            Pin::new(Port::B, 7),
+            Pin::new(Port::B, 9),
+            Pin::new(Port::A, 10),
+            Pin::new(Port::A, 15),
         ]
     }
 

@@ -30,6 +30,7 @@ mod machine;
 mod part;
 mod pwm;
 mod registers;
+mod regular;
 pub mod scenarios;
 mod watchdog;
 

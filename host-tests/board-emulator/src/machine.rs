@@ -17,7 +17,7 @@ use super::enable_line::{ENABLE, ENABLE_READ_BACK};
 use super::flash::Contents;
 use super::image::Image;
 use super::layout::Layout;
-use super::part::{FLASH, Pin, Port, RAM, RAM_BYTES};
+use super::part::{FLASH, RAM, RAM_BYTES};
 
 /// A millisecond, ns.
 const MILLISECOND_NS: f64 = 1e6;
@@ -399,12 +399,8 @@ impl Board {
             }
         }
         // A closed contact is low.
-        for (contact, number) in Panel::CONTACTS
-            .into_iter()
-            .zip([6, 7, 8, 9, 10, 11, 12, 4, 5])
-        {
+        for (contact, pin) in Panel::CONTACTS.into_iter().zip(Layout::contact_pins()) {
             let closed = contacts.panel.is_closed(contact);
-            let pin = Pin::new(Port::C, number);
             chip.conditions.levels.insert(pin, !closed);
         }
     }

@@ -102,6 +102,8 @@ scenarios! {
     remote_control: "remote-control",
     button_travel: "button-travel",
     button_contacts: "button-contacts",
+    draft_and_depth: "draft-and-depth",
+    stuck_conversions: "stuck-conversions",
     random_operation: "random-operation",
 }
 

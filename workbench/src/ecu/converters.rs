@@ -97,6 +97,8 @@ impl Converters {
                 signals.sensor_supply_v / full_scale(BoardScaling::NOMINAL.sensor_supply.0),
             ),
             reference: code(f64::from(BoardScaling::NOMINAL.reference.get()) / CODES),
+            // This machine has neither draft pins nor a depth sensor nor their dials.
+            ..Samples::default()
         }
     }
 }

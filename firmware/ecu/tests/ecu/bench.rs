@@ -228,7 +228,8 @@ impl Bench {
     }
 }
 
-fn code(share: f64) -> AdcCode {
+/// The code of a share of full scale.
+pub fn code(share: f64) -> AdcCode {
     AdcCode::new((share * 4_096.0).round().clamp(0.0, 4_095.0) as u16)
 }
 
@@ -250,5 +251,7 @@ pub fn samples(angle: i32, lever: i32, reply: &Reply) -> Samples {
         second_angle: of_angle(180_000 - angle),
         sensor_supply: code(5_000.0 / 6_600.0),
         reference: BoardScaling::NOMINAL.reference,
+        // Neither pins nor a depth sensor nor their dials are fitted.
+        ..Samples::default()
     }
 }

@@ -1,10 +1,11 @@
 //! Speeds, draft and their troubles, from frames to the controller and back.
 
+use hitch_ecu::{AdcCode, Contact, Contacts, Panel};
 use hitch_protocols::j1939::{Id, Pgn};
-use hitch_quantities::Inputs;
 use hitch_quantities::units::{Count, MillimetrePerSecond, PerMille};
+use hitch_quantities::{Inputs, Reason, State, Trouble};
 
-use crate::bench::{Bench, Flash};
+use crate::bench::{Bench, Flash, code};
 use crate::engine::{of_the_board, stored};
 
 /// A calibration with draft pins and slip guard.
@@ -71,4 +72,126 @@ fn pins_that_are_fitted_and_not_there_are_a_trouble_in_any_state() {
     bench.run(2_000);
     assert!(bench.angle() > 100_000, "position control goes on");
     assert_eq!(last(&bench, Pgn::DM1)[2..5], [0x57, 0x07, 31]);
+}
+
+/// Angle at which the implement touches the ground, thousandths of a degree.
+const GROUND: i32 = 90_000;
+/// Draft of the soil, N per degree below the ground.
+const SOIL_N: f64 = 900.0;
+/// Nominal force of both pins of the untaught calibration, N.
+const SPAN_N: f64 = 80_000.0;
+
+/// A field: the draft is proportional to the depth, and shared by both pins.
+#[derive(Default)]
+struct Field {
+    /// Position of the dial of the set point, 0 to 1.
+    dial: f64,
+    /// The wire of the left pin is broken.
+    broken: bool,
+}
+
+impl Field {
+    fn connect(&self, angle: i32, now_ms: u32, contacts: &mut Contacts) {
+        let draft_n = SOIL_N * f64::from((GROUND - angle).max(0)) * 1e-3;
+        let pin = code(0.5 + 0.25 * draft_n / SPAN_N);
+        let tremble = |by: u32| AdcCode::new(pin.get() + ((now_ms + by) % 3) as u16);
+        let samples = &mut contacts.samples;
+        samples.left_pin = if self.broken {
+            AdcCode::default()
+        } else {
+            tremble(0)
+        };
+        samples.right_pin = tremble(1);
+        samples.set_point_dial = code(0.1 + 0.8 * self.dial);
+    }
+
+    fn run(&self, bench: &mut Bench, ms: u32) {
+        for _ in 0..ms {
+            let (angle, now_ms) = (bench.angle(), bench.now_ms);
+            bench.step_with(|contacts| self.connect(angle, now_ms, contacts));
+        }
+    }
+}
+
+/// A hitch in the soil, by the lever, with draft pins.
+fn in_the_soil(field: &Field) -> Bench {
+    let mut block = of_the_board();
+    block.draft.fitted = Count(1);
+    let mut bench = Bench::start(stored(block));
+    field.run(&mut bench, 300);
+    for lever in [80_000, 95_000, 80_000] {
+        bench.lever = lever;
+        field.run(&mut bench, if lever == 80_000 { 50 } else { 100 });
+    }
+    field.run(&mut bench, 3_000);
+    assert!((bench.angle() - 80_000).abs() < 1_000, "{}", bench.angle());
+    bench
+}
+
+#[test]
+fn the_selected_draft_moves_the_hitch_to_the_force_of_the_dial() {
+    let mut field = Field::default();
+    let mut bench = in_the_soil(&field);
+    for wanted_n in [4_500.0, 11_000.0] {
+        field.dial = wanted_n / SPAN_N;
+        bench.panel = Panel::FIELD.with(Contact::Draft, true);
+        field.run(&mut bench, 20_000);
+        let found_n = SOIL_N * f64::from(GROUND - bench.angle()) * 1e-3;
+        println!("{wanted_n} N wanted, {found_n} N");
+        // One step of the set point, `draft.step`, is 4.5 degrees.
+        assert!(
+            (found_n - wanted_n).abs() < 0.5 * 4.5 * SOIL_N,
+            "{found_n} N"
+        );
+        let outputs = bench.machine.ecu().outputs();
+        assert_eq!(outputs.reference, Some(Reason::Draft), "{outputs:?}");
+    }
+}
+
+#[test]
+fn a_broken_wire_of_a_pin_or_of_the_dial_leaves_the_hitch_where_it_is() {
+    for pin in [true, false] {
+        let mut field = Field {
+            dial: 9_000.0 / SPAN_N,
+            broken: false,
+        };
+        let mut bench = in_the_soil(&field);
+        bench.panel = Panel::FIELD.with(Contact::Draft, true);
+        field.run(&mut bench, 3_000);
+        let before = bench.angle();
+        if pin {
+            field.broken = true;
+        } else {
+            // 0.3 V of 5 V are below the dial's range, and below 0.25 V its wire is broken.
+            field.dial = -0.1;
+        }
+        field.run(&mut bench, 1_000);
+        let outputs = bench.machine.ecu().outputs();
+        let moved = bench.angle() - before;
+        println!("pin {pin}: moved by {moved} thousandths of a degree");
+        assert_eq!(outputs.trouble, pin.then_some(Trouble::PinRange));
+        assert!(moved.abs() < 3_000, "{moved}");
+        assert_ne!(outputs.reference, Some(Reason::Draft));
+    }
+}
+
+#[test]
+fn the_engagement_switch_lowers_a_raised_hitch_into_the_soil() {
+    let field = Field {
+        dial: 9_000.0 / SPAN_N,
+        broken: false,
+    };
+    let mut bench = in_the_soil(&field);
+    bench.panel = Panel::FIELD
+        .with(Contact::Draft, true)
+        .with(Contact::QuickLift, true);
+    field.run(&mut bench, 3_000);
+    assert!(bench.angle() > 120_000, "{}", bench.angle());
+    bench.panel = Panel::FIELD.with(Contact::Draft, true);
+    field.run(&mut bench, 500);
+    bench.panel = bench.panel.with(Contact::Engage, true);
+    field.run(&mut bench, 3_000);
+    println!("{} thousandths of a degree", bench.angle());
+    assert!(bench.angle() < GROUND, "{}", bench.angle());
+    assert_ne!(bench.state(), State::Fault);
 }

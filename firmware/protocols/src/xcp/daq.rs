@@ -20,7 +20,7 @@ use super::packet::{MOST_BYTES, Packet, packet};
 /// Maximum number of lists.
 const LISTS: usize = 4;
 /// Number of tables of all lists.
-const TABLES: usize = 16;
+const TABLES: usize = 17;
 /// Number of entries of all tables.
 const ENTRIES: usize = 64;
 /// Capacity of the packet queue.

@@ -52,9 +52,14 @@ impl Chip {
         if let Some((from, _)) = self.conditions.wires.iter().find(|(_, to)| *to == pin) {
             return self.output(*from);
         }
-        self.registers
-            .field(self.port(pin.port) + 0x0C, 2 * pin.number, 2)
-            == 1
+        self.is_pulled_up(pin)
+    }
+
+    /// Whether a pin has its pull-up.
+    #[must_use]
+    pub fn is_pulled_up(&self, pin: Pin) -> bool {
+        let pulls = self.port(pin.port) + 0x0C;
+        self.registers.field(pulls, 2 * pin.number, 2) == 1
     }
 
     fn write_port(&mut self, base: u32, offset: u32, value: u32) {
@@ -172,9 +177,11 @@ impl Chip {
         self.registers.set(address, value);
         if let Some(index) = self.converter_at(address) {
             let base = places.adc[index];
+            let values = (before, value);
             let wrong =
-                self.converters[index].written(address - base, value, &mut self.registers, now_ns);
+                self.converters[index].written(address - base, values, &mut self.registers, now_ns);
             self.violations.extend(wrong);
+            self.convert_regular(index);
             return;
         }
         // The converters' clock.

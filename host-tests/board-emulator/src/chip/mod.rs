@@ -304,20 +304,18 @@ impl Chip {
     }
 
     fn trigger_converters(&mut self) {
-        let (part, conditions) = (self.part, &self.conditions);
-        let share = |converter: usize, channel: u32| {
-            let volts = match part.analog_pin(converter, channel) {
-                Some(pin) => conditions.volts.get(&pin).copied().unwrap_or(0.0),
-                None if part.is_internal_reference(converter, channel) => {
-                    conditions.internal_reference_v
-                }
-                None => 0.0,
-            };
-            volts / conditions.reference_v
-        };
+        let share = share_of_reference(self.part, &self.conditions);
         for (converter, clock_hz) in self.converters.iter_mut().zip(self.converter_hz) {
-            converter.trigger(&self.registers, clock_hz, self.now_ns, share);
+            converter.trigger(&self.registers, clock_hz, self.now_ns, &share);
         }
+    }
+
+    /// Starts a regular conversion of a converter, if one is demanded.
+    fn convert_regular(&mut self, index: usize) {
+        let share = share_of_reference(self.part, &self.conditions);
+        let clock_hz = self.converter_hz[index];
+        let converter = &mut self.converters[index];
+        converter.start_regular(&self.registers, clock_hz, self.now_ns, share);
     }
 
     /// Works out the clocks after something has been written that they depend on.
@@ -376,5 +374,19 @@ impl Chip {
     #[must_use]
     pub fn outputs_enabled(&self) -> bool {
         self.registers.bit(self.part.addresses().tim1 + 0x44, MOE)
+    }
+}
+
+/// The voltage of a converter's channel as a share of the reference.
+fn share_of_reference(part: Part, conditions: &Conditions) -> impl Fn(usize, u32) -> f64 {
+    move |converter, channel| {
+        let volts = match part.analog_pin(converter, channel) {
+            Some(pin) => conditions.volts.get(&pin).copied().unwrap_or(0.0),
+            None if part.is_internal_reference(converter, channel) => {
+                conditions.internal_reference_v
+            }
+            None => 0.0,
+        };
+        volts / conditions.reference_v
     }
 }

@@ -4,6 +4,7 @@ mod bus;
 mod buttons;
 mod desk;
 mod faults;
+mod field;
 mod first_flash;
 mod history;
 mod motion;
@@ -19,7 +20,7 @@ pub use rig::Rig;
 pub use setup::{Scenario, Setup};
 
 /// All of them, by name.
-pub const ALL: [(&str, Scenario); 30] = [
+pub const ALL: [(&str, Scenario); 32] = [
     ("boot", start::boot),
     ("factory-fresh", start::factory_fresh),
     ("slow-crystal", start::slow_crystal),
@@ -48,6 +49,8 @@ pub const ALL: [(&str, Scenario); 30] = [
     ("remote-control", remote::consent),
     ("button-travel", buttons::longest_travel),
     ("button-contacts", buttons::contacts),
+    ("draft-and-depth", field::draft_and_depth),
+    ("stuck-conversions", field::stuck_conversions),
     ("desk", desk::bring_up),
     ("random-operation", random::operation),
 ];

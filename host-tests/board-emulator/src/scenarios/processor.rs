@@ -117,9 +117,10 @@ pub fn stack_overflow(setup: &Setup) -> Result<String> {
 pub fn flipped_registers(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
     let places = setup.layout.part().addresses();
-    let sequence = match setup.layout.part() {
-        Part::Stm32f405 => 0x38,
-        Part::Stm32g474 => 0x4C,
+    // Injected sequence, and sampling times of the slow channels.
+    let (sequence, times) = match setup.layout.part() {
+        Part::Stm32f405 => (0x38, 0x10),
+        Part::Stm32g474 => (0x4C, 0x14),
     };
     let registers = [
         ("TIM1_ARR", places.tim1 + 0x2C, 1 << 4),
@@ -129,6 +130,7 @@ pub fn flipped_registers(setup: &Setup) -> Result<String> {
         ("GPIOB_MODER", places.gpio + 0x400, 1 << 20),
         ("GPIOC_PUPDR", places.gpio + 0x80C, 1 << 16),
         ("ADC1_JSQR", places.adc[0] + sequence, 1 << 9),
+        ("ADC2_SMPR", places.adc[1] + times, 1 << 12),
     ];
     let mut worst_ms: f64 = 0.0;
     for (name, address, bit) in registers {

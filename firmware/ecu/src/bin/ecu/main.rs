@@ -130,6 +130,7 @@ fn next_samples(converters: &mut Converters, can: &mut Can, slow_clock: &mut Slo
     loop {
         can.listen();
         slow_clock.listen();
+        converters.listen();
         if let Some(samples) = converters.take() {
             return samples;
         }

@@ -1,4 +1,4 @@
-//! Functions of the pins.
+//! Functions of the pins, whose numbers are 0 to 15.
 
 use core::convert::Infallible;
 
@@ -8,6 +8,7 @@ use stm32_metapac::gpio::vals::{Moder, Ospeedr, Pupdr};
 
 /// A converter's input.
 pub fn analog(port: Gpio, pin: usize) {
+    let pin = pin & 0xF;
     port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::FLOATING));
     port.moder().modify(|w| w.set_moder(pin, Moder::ANALOG));
 }
@@ -28,6 +29,7 @@ pub fn output(port: Gpio, pin: usize) {
 
 /// A contact to ground.
 pub fn input_with_pull_up(port: Gpio, pin: usize) {
+    let pin = pin & 0xF;
     port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::PULL_UP));
     port.moder().modify(|w| w.set_moder(pin, Moder::INPUT));
 }

@@ -32,6 +32,20 @@ pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
     ],
 ];
 
+/// The slow channels of ADC2 in the order of their conversions.
+pub const SLOW: [(u8, Signal); 5] = [
+    (6, Signal::LeftPin),       // PA6
+    (7, Signal::RightPin),      // PA7
+    (9, Signal::DepthSensor),   // PB1
+    (14, Signal::MixDial),      // PC4
+    (15, Signal::SetPointDial), // PC5
+];
+
+/// The flags of the status register, each cleared by writing zero (RM0090, 13.13.1).
+const FLAGS: u32 = 0x3F;
+/// The end of an injected sequence.
+const JEOC: u32 = 1 << 2;
+
 /// VREFINT, on ADC1 only.
 const REFERENCE: u8 = 17;
 
@@ -41,9 +55,12 @@ pub fn start_pins_and_clocks() {
         pins::analog(GPIOA, pin);
         pins::analog(GPIOC, pin);
     }
-    pins::analog(GPIOA, 4);
-    pins::analog(GPIOA, 5);
-    pins::analog(GPIOB, 0);
+    for pin in 4..=7 {
+        pins::analog(GPIOA, pin);
+    }
+    for (port, pin) in [(GPIOB, 0), (GPIOB, 1), (GPIOC, 4), (GPIOC, 5)] {
+        pins::analog(port, pin);
+    }
     ADC123_COMMON.ccr().modify(|w| {
         // 84 MHz / 4 = 21 MHz, of 36 MHz allowed.
         w.set_adcpre(Adcpre::DIV4);
@@ -58,20 +75,36 @@ pub fn is_done(adc: Adc) -> bool {
 
 /// Prepares the next sequence.
 pub fn clear(adc: Adc) {
-    // Writing zero clears a flag; the other flags are not affected.
-    adc.sr().modify(|w| w.set_jeoc(false));
+    // Writing one leaves a flag: reading it before could lose a regular conversion that ends in between.
+    adc.sr().write(|w| w.0 = FLAGS & !JEOC);
 }
 
-/// Four channels take 4 * (84 + 12) / 21 MHz = 18 us; the internal reference has to be sampled for 10 us, and takes 23 us.
-pub fn start_sequence(adc: Adc, sequence: &[(u8, Signal); 4]) {
-    for &(channel, _) in sequence {
+/// Starts a regular conversion of one channel; true if it has started (RM0090, 13.3.3). One that has not ended is dropped, since
+/// writing the sequence begins anew. Hardware clears the start bit.
+pub fn start_regular(adc: Adc, channel: u8) -> bool {
+    adc.sqr3().write(|w| w.set_sq(0, channel));
+    // Reading clears the flag of a conversion that has ended meanwhile.
+    let _ = adc.dr().read();
+    adc.cr2().modify(|w| w.set_swstart(true));
+    true
+}
+
+/// The code of the regular conversion, once, when it has ended. Reading it clears the flag.
+pub fn regular_code(adc: Adc) -> Option<u16> {
+    adc.sr().read().eoc().then(|| adc.dr().read().data())
+}
+
+/// Prepares the injected sequence and the regular conversions of a converter. Four channels take 4 * (84 + 12) / 21 MHz = 18 us; the internal reference has to be sampled for 10 us, and takes 23 us.
+pub fn start_sequence(adc: Adc, sequence: &[(u8, Signal); 4], slow: &[(u8, Signal)]) {
+    for &(channel, _) in sequence.iter().chain(slow) {
         let time = match channel {
             REFERENCE => SampleTime::CYCLES480,
             _ => SampleTime::CYCLES84,
         };
         let channel = usize::from(channel);
         match channel.checked_sub(10) {
-            Some(high) => adc.smpr1().modify(|w| w.set_smp(high, time)),
+            // The last channel is 18.
+            Some(high) => adc.smpr1().modify(|w| w.set_smp(high % 9, time)),
             None => adc.smpr2().modify(|w| w.set_smp(channel, time)),
         }
     }

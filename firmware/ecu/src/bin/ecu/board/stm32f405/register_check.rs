@@ -52,21 +52,25 @@ pub const REGISTERS: &[(u32, u32)] = &[
     (0x4000_0C1C, ALL),
     (0x4000_0C20, ALL),
     (0x4000_0C50, ALL),
-    // ADC1 to ADC3: control, sampling times, sequence.
+    // ADC1 to ADC3: control without the start bit of regular conversions, sampling times, injected sequence, length of the
+    // regular one.
     (0x4001_2004, ALL),
     (0x4001_2008, ALL),
     (0x4001_200C, ALL),
     (0x4001_2010, ALL),
+    (0x4001_202C, ALL),
     (0x4001_2038, ALL),
     (0x4001_2104, ALL),
-    (0x4001_2108, ALL),
+    (0x4001_2108, !(1 << 30)),
     (0x4001_210C, ALL),
     (0x4001_2110, ALL),
+    (0x4001_212C, ALL),
     (0x4001_2138, ALL),
     (0x4001_2204, ALL),
     (0x4001_2208, ALL),
     (0x4001_220C, ALL),
     (0x4001_2210, ALL),
+    (0x4001_222C, ALL),
     (0x4001_2238, ALL),
     (0x4001_2304, ALL),
     // CAN: master control without the request for initialisation, bit timing, filter.

@@ -8,7 +8,7 @@ use stm32_metapac::adccommon::vals::Ckmode;
 use stm32_metapac::{ADC12_COMMON, ADC345_COMMON};
 
 use super::board_data::ANALOG_PINS;
-pub use super::board_data::SEQUENCES;
+pub use super::board_data::{SEQUENCES, SLOW};
 use super::delay::CycleDelay;
 use super::factory_reference::REFERENCE;
 use crate::board::pins;
@@ -40,11 +40,33 @@ pub fn clear(adc: Adc) {
     adc.isr().write(|w| w.set_jeos(true));
 }
 
-/// Four channels take 4 * (92.5 + 12.5) / 42 MHz = 10 us; the internal reference has to be sampled for 4 us, and takes
+/// Starts a regular conversion of one channel; true if it has started (RM0440, 21.4.15). The sequence must not be changed while
+/// one runs. Writing zero leaves the other bits, which enable the converter and arm its trigger.
+pub fn start_regular(adc: Adc, channel: u8) -> bool {
+    if adc.cr().read().adstart() {
+        return false;
+    }
+    // Reading clears the end of a conversion that nobody has waited for.
+    let _ = adc.dr().read();
+    adc.sqr1().write(|w| w.set_sq(0, channel));
+    adc.cr().write(|w| {
+        w.set_advregen(true);
+        w.set_adstart(true);
+    });
+    true
+}
+
+/// The code of the regular conversion, once, when it has ended. Reading it clears the flag; the start bit is cleared after it.
+pub fn regular_code(adc: Adc) -> Option<u16> {
+    let has_ended = adc.isr().read().eoc() && !adc.cr().read().adstart();
+    has_ended.then(|| adc.dr().read().rdata())
+}
+
+/// Prepares the injected sequence and the regular conversions of a converter. Four channels take 4 * (92.5 + 12.5) / 42 MHz = 10 us; the internal reference has to be sampled for 4 us, and takes
 /// 6 us.
-pub fn start_sequence(adc: Adc, sequence: &[(u8, Signal); 4]) {
+pub fn start_sequence(adc: Adc, sequence: &[(u8, Signal); 4], slow: &[(u8, Signal)]) {
     wake_and_calibrate(adc);
-    for &(channel, _) in sequence {
+    for &(channel, _) in sequence.iter().chain(slow) {
         let time = match channel {
             REFERENCE => SampleTime::CYCLES247_5,
             _ => SampleTime::CYCLES92_5,

@@ -14,18 +14,23 @@ pub const CRYSTAL_HZ: u32 = 8_000_000;
 pub const CRYSTAL_DIVIDER: Pllm = Pllm::DIV2;
 
 /// The converters' inputs.
-pub const ANALOG_PINS: [(Gpio, usize); 11] = [
+pub const ANALOG_PINS: [(Gpio, usize); 16] = [
     (GPIOA, 0),
     (GPIOA, 1),
     (GPIOA, 2),
     (GPIOA, 3),
     (GPIOA, 5),
+    (GPIOA, 6),
+    (GPIOA, 7),
     (GPIOB, 0),
     (GPIOB, 1),
     (GPIOB, 13),
+    (GPIOB, 15),
     (GPIOC, 0),
     (GPIOC, 1),
     (GPIOC, 2),
+    (GPIOC, 4),
+    (GPIOC, 5),
 ];
 
 /// The channels of the three sequences in the order of their ranks, with their signals.
@@ -48,6 +53,15 @@ pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
         (5, Signal::SensorSupply), // PB13
         (REFERENCE, Signal::Reference),
     ],
+];
+
+/// The slow channels of ADC2 in the order of their conversions.
+pub const SLOW: [(u8, Signal); 5] = [
+    (3, Signal::LeftPin),       // PA6
+    (4, Signal::RightPin),      // PA7
+    (15, Signal::DepthSensor),  // PB15
+    (5, Signal::MixDial),       // PC4
+    (11, Signal::SetPointDial), // PC5
 ];
 
 /// The nominal board's, with a second track of the rocker-angle sensor on PA5.
