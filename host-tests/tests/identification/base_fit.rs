@@ -11,9 +11,9 @@ use hitch_identification::constants::tolerances::Tolerances;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
-use hitch_model_file::{Valve, fitted_constants};
+use hitch_model_file::fitted_constants;
 use hitch_plant::units::lpm_from_m3_s;
-use hitch_plant::{Constants, Model, ValveCurve};
+use hitch_plant::{Constants, Model, Valve, ValveCurve};
 use host_tests::seeds::{cases, seeds};
 use host_tests::short_moves::few_runs;
 use truth_rigs::hidden_effects::starting_point;
@@ -58,7 +58,7 @@ const TYPICAL: Off = Off {
 
 fn declared(truth: &Model, off: Off) -> Model {
     let mut constants = truth.constants().clone();
-    for valve in [Valve::Lift, Valve::Lower] {
+    for valve in Valve::BOTH {
         let curve = &mut valve.of_mut(&mut constants).curve;
         let threshold_a = curve.threshold_a();
         let currents_a = curve.currents_a().to_vec();
@@ -117,8 +117,8 @@ fn true_value(name: &str, truth: &Model) -> f64 {
     let mut constants: Constants = truth.constants().clone();
     match name.split_once('.') {
         Some((table, "threshold_a")) => {
-            let valves = [Valve::Lift, Valve::Lower].into_iter();
-            let mut valves = valves.filter(|valve| valve.table() == table);
+            let valves = Valve::BOTH.into_iter();
+            let mut valves = valves.filter(|valve| valve.key() == table);
             let valve = valves.next().expect("a valve");
             valve.of(&constants).curve.threshold_a()
         }
@@ -139,14 +139,14 @@ fn covered(truth: &Model, fit: &BaseFit) -> Vec<(String, bool)> {
         let value = true_value(&constant.name, truth);
         (constant.name.clone(), holds(constant.interval, value))
     });
-    let true_flows = [Valve::Lift, Valve::Lower].into_iter().flat_map(|valve| {
+    let true_flows = Valve::BOTH.into_iter().flat_map(|valve| {
         let flows = valve.of(truth.constants()).curve.flows_m3_s();
         flows.iter().filter(|flow| **flow > 0.0)
     });
     let points = fit.curves.iter().zip(true_flows);
     let points = points.filter(|(point, _)| point.determined);
     let points = points.map(|(point, &flow)| {
-        let name = format!("{} at {:.2} A", point.valve.table(), point.current_a);
+        let name = format!("{} at {:.2} A", point.valve.key(), point.current_a);
         (name, holds(point.interval_lpm, lpm_from_m3_s(flow)))
     });
     constants.chain(points).collect()

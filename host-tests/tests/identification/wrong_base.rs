@@ -5,8 +5,7 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::diagnosis::diagnose;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain, fit_base};
-use hitch_model_file::Valve;
-use hitch_plant::{Model, full_name};
+use hitch_plant::{Model, Valve, full_name};
 use truth_rigs::hidden_effects::starting_point;
 use truth_rigs::hidden_effects::wrong_base::declared;
 use truth_rigs::second_rig::campaign_writer::campaign;
@@ -74,7 +73,7 @@ fn constants_that_are_off_do_not_become_effects() {
 fn largest_flow_error(model: &Model) -> f64 {
     let truth = starting_point(Family::Steady);
     let mut largest = 0.0;
-    for valve in [Valve::Lift, Valve::Lower] {
+    for valve in Valve::BOTH {
         for current_a in [2.0, 2.2, 2.4, 2.6, 2.8, 3.0] {
             let flow = |model: &Model| {
                 let constants = model.constants();

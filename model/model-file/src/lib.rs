@@ -65,7 +65,7 @@ pub use constants::{Constant, Role, Tolerance, fitted_constants};
 pub use quoted::quoted;
 pub use scalars::{Scalar, scalars, with_scalars};
 pub use starting_points::{dynamic, nominal};
-pub use template::{Template, Valve};
+pub use template::Template;
 
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use hitch_input::input_error::InputError;
 use hitch_input::naming::offer_names;
 use hitch_input::source_file::SourceFile;
-use hitch_plant::{Constants, Dynamics, LinkageTable, Model, OrificeValve, PumpKind, ValveCurve};
+use hitch_plant::{Constants, Dynamics, LinkageTable, Model, PumpKind, Valve, ValveCurve};
 
 use crate::constants::{
     CONSTANTS, CURVES, CYLINDER_COUNT, Constant, Had, KINDS, TABLES, Variant, clear_others,
@@ -35,43 +35,6 @@ const HEAD: &str = "\
 pub struct Template {
     name: String,
     constants: Constants,
-}
-
-/// One of the two valves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Valve {
-    /// The lift valve.
-    Lift,
-    /// The lowering valve.
-    Lower,
-}
-
-impl Valve {
-    /// Its table in a model file.
-    #[must_use]
-    pub fn table(self) -> &'static str {
-        match self {
-            Self::Lift => "lift_valve",
-            Self::Lower => "lower_valve",
-        }
-    }
-
-    /// The valve in a model's constants.
-    #[must_use]
-    pub fn of(self, constants: &Constants) -> &OrificeValve {
-        match self {
-            Self::Lift => &constants.lift_valve,
-            Self::Lower => &constants.lower_valve,
-        }
-    }
-
-    /// The valve in a model's constants, mutable.
-    pub fn of_mut(self, constants: &mut Constants) -> &mut OrificeValve {
-        match self {
-            Self::Lift => &mut constants.lift_valve,
-            Self::Lower => &mut constants.lower_valve,
-        }
-    }
 }
 
 impl Template {

@@ -30,6 +30,7 @@ pub mod simulation;
 pub mod solver;
 mod state;
 pub mod units;
+mod valve;
 
 pub use channel::Channel;
 pub use components::check_valve::CheckValve;
@@ -51,9 +52,9 @@ pub use constants::{Constants, Dynamics};
 pub use hooks::effect::{
     AddedEffect, Effect, Parameter, ParameterKind, SizeResponse, full_name, is_same,
 };
-pub use hooks::effect_hooks::{Currents, Valve};
 pub use hooks::place::Place;
 pub use hooks::reading::Reading;
 pub use model::Model;
 pub use plant::Plant;
 pub use state::{HitchRig, MechanicalState, Rig};
+pub use valve::{Currents, Valve};

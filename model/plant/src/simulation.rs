@@ -1,12 +1,12 @@
 //! Simulation of a whole run: the plant driven by logged currents.
 
 use crate::channel::Channel;
-use crate::hooks::effect_hooks::Currents;
 use crate::model::Model;
 use crate::plant::Plant;
 use crate::solver::dynamic::Steps;
 use crate::state::Rig;
 use crate::units::bar_from_pa;
+use crate::valve::Currents;
 
 /// Readings of the instruments over a run, by [`Channel::index`], in the channels' units.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -71,7 +71,7 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     let mut calibration = base.clone();
     for (name, valve, table) in [
         ("lift", Valve::Lift, &mut calibration.lift),
-        ("lower", Valve::Lowering, &mut calibration.lower),
+        ("lower", Valve::Lower, &mut calibration.lower),
     ] {
         *table = valve_table(&survey(model, valve)).ok_or_else(|| CalibrateError::Shut {
             valve: name,

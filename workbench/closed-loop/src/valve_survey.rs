@@ -32,41 +32,26 @@ pub struct CurvePoint {
 /// Static flow, l/min, of one valve at a current, A.
 #[must_use]
 pub fn static_flow_lpm(model: &Model, valve: Valve, current_a: f64) -> f64 {
-    let (port_bar, currents) = match valve {
-        Valve::Lift => (
-            LIFT_PORT_BAR,
-            Currents {
-                lift_a: current_a,
-                lower_a: 0.0,
-            },
-        ),
-        Valve::Lowering => (
-            LOWERING_PORT_BAR,
-            Currents {
-                lift_a: 0.0,
-                lower_a: current_a,
-            },
-        ),
+    let port_bar = match valve {
+        Valve::Lift => LIFT_PORT_BAR,
+        Valve::Lower => LOWERING_PORT_BAR,
     };
+    let currents = Currents::only(valve, current_a);
     let rig = Rig::Flow {
         port_pressure_pa: pa_from_bar(port_bar),
     };
     let flows = Plant::new(model, rig, OIL_TEMPERATURE_C, currents).flows();
     lpm_from_m3_s(match valve {
         Valve::Lift => flows.lift_m3_s,
-        Valve::Lowering => flows.lower_m3_s,
+        Valve::Lower => flows.lower_m3_s,
     })
 }
 
 /// Largest current of a model's valve, A: that of its curve.
 #[must_use]
 pub fn largest_current_a(model: &Model, valve: Valve) -> f64 {
-    let constants = model.constants();
-    let curve = match valve {
-        Valve::Lift => &constants.lift_valve.curve,
-        Valve::Lowering => &constants.lower_valve.curve,
-    };
-    curve.currents_a().last().copied().unwrap_or(0.0)
+    let currents_a = valve.of(model.constants()).curve.currents_a();
+    currents_a.last().copied().unwrap_or(0.0)
 }
 
 /// The section of a valve's curve between threshold and saturation, in steps of 1 mA.
@@ -123,7 +108,7 @@ impl ValveEnds {
     /// Currents of the lowering valve.
     #[must_use]
     pub fn of_lowering(model: &Model) -> Self {
-        Self::of(model, Valve::Lowering)
+        Self::of(model, Valve::Lower)
     }
 
     fn of(model: &Model, valve: Valve) -> Self {

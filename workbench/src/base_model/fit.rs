@@ -172,7 +172,7 @@ impl ShownPoint {
     #[must_use]
     pub fn new(fitted: &CurvePoint) -> Self {
         Self {
-            valve: fitted.valve.table(),
+            valve: fitted.valve.key(),
             current_a: fitted.current_a,
             declared_lpm: fitted.declared_lpm,
             fitted_lpm: fitted.fitted_lpm,

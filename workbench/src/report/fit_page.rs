@@ -5,9 +5,8 @@ use std::sync::Arc;
 use hitch_identification::base::BaseFit;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::estimation::fit::Fit;
-use hitch_model_file::Valve;
-use hitch_plant::Model;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s};
+use hitch_plant::{Model, Valve};
 use maud::{Markup, html};
 
 use super::chart::Stroke;
@@ -124,7 +123,7 @@ fn deviation(told: &ShownBaseFit, valve: Valve, title: &str) -> Markup {
     let points = told
         .curves
         .iter()
-        .filter(|point| point.valve == valve.table());
+        .filter(|point| point.valve == valve.key());
     let fitted = points.map(|point| (point.current_a, of(point, point.fitted_lpm)));
     let curves = vec![("fitted", Stroke::After, fitted.unzip())];
     let chart = Drawn {
@@ -145,7 +144,7 @@ fn lines(
 ) -> Vec<(String, Stroke, Points)> {
     let intervals = |determined: bool| {
         let points = told.curves.iter();
-        let own = points.filter(|point| point.valve == valve.table() && point.low_lpm.is_finite());
+        let own = points.filter(|point| point.valve == valve.key() && point.low_lpm.is_finite());
         bars(own.filter(move |point| point.determined == determined), of)
     };
     let bars = [

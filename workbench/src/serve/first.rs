@@ -8,8 +8,8 @@ use axum::extract::{DefaultBodyLimit, Query, State};
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_input::source_file::SourceFile;
-use hitch_model_file::{Template, Valve};
-use hitch_plant::Model;
+use hitch_model_file::Template;
+use hitch_plant::{Model, Valve};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -129,7 +129,7 @@ async fn sheet(State(sessions): Known, Query(of): Query<Of>) -> Answer<Sheet> {
     for (valve, title) in VALVES {
         let ends = data_sheet::ends(template.curve(valve));
         questions.extend(ENDS.iter().zip(ends).map(|((key, what), value)| Question {
-            name: format!("{}.{key}", valve.table()),
+            name: format!("{}.{key}", valve.key()),
             question: format!("{title}, {what}"),
             value: format!("{value:.3}"),
         }));
@@ -188,9 +188,7 @@ impl Answers {
 /// Index of the valve and of the end of its curve that a question is about.
 fn end(name: &str) -> Option<(usize, usize)> {
     let (table, key) = name.split_once('.')?;
-    let valve = VALVES
-        .iter()
-        .position(|(valve, _)| valve.table() == table)?;
+    let valve = VALVES.iter().position(|(valve, _)| valve.key() == table)?;
     let end = ENDS.iter().position(|(known, _)| *known == key)?;
     Some((valve, end))
 }

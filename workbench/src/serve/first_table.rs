@@ -8,8 +8,8 @@ use axum::extract::{DefaultBodyLimit, Query, State};
 use axum::routing::post;
 use axum::{Json, Router};
 use hitch_input::source_file::SourceFile;
-use hitch_model_file::{Template, Valve};
-use hitch_plant::Model;
+use hitch_model_file::Template;
+use hitch_plant::{Model, Valve};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -39,7 +39,7 @@ fn travel_s(model: &Model, valve: Valve, current_a: f64, load_kg: f64) -> Option
     let stroke_m = model.constants().cylinder.stroke_m;
     let (start_m, [lift_a, lower_a]) = match valve {
         Valve::Lift => (0.0, [current_a, 0.0]),
-        Valve::Lowering => (stroke_m, [0.0, current_a]),
+        Valve::Lower => (stroke_m, [0.0, current_a]),
     };
     let currents = Currents { lift_a, lower_a };
     let rig = Rig::Hitch(HitchRig {
@@ -97,7 +97,7 @@ fn lifting_time_does_not_depend_on_load() {
 #[test]
 fn lowering_time_falls_with_load_and_with_current() {
     for model in [hitch_model_file::nominal(), hitch_model_file::dynamic()] {
-        let times_s = panel(&model, Valve::Lowering, FIGURE_12_LOWER_A);
+        let times_s = panel(&model, Valve::Lower, FIGURE_12_LOWER_A);
         assert!(times_s.into_iter().all(fall), "{}", model.name);
         assert!(falls_with_current(&times_s), "{}", model.name);
     }

@@ -36,7 +36,7 @@ const SEED: u64 = 20_200_850;
 pub fn threshold_shift_a(valve: Valve) -> f64 {
     match valve {
         Valve::Lift => 0.0,
-        Valve::Lowering => table_5(valve).threshold_a - threshold_a(table_2(valve)),
+        Valve::Lower => table_5(valve).threshold_a - threshold_a(table_2(valve)),
     }
 }
 
@@ -48,7 +48,7 @@ pub fn flow_scale(valve: Valve) -> f64 {
 /// The flow test of both valves.
 pub fn campaign() -> Campaign {
     let lift = LIFT_PORTS_BAR.map(|port_bar| (Valve::Lift, port_bar));
-    let lower = LOWER_PORTS_BAR.map(|port_bar| (Valve::Lowering, port_bar));
+    let lower = LOWER_PORTS_BAR.map(|port_bar| (Valve::Lower, port_bar));
     let mut noise = Noise {
         lift_current_a: None,
         lower_current_a: None,
@@ -84,7 +84,7 @@ fn run(valve: Valve, port_pressure_bar: f64, random: &mut Pcg64) -> Run {
     let off_a = vec![0.0; samples];
     let (lift_current_a, lower_current_a, name) = match valve {
         Valve::Lift => (current_a, off_a, "lift"),
-        Valve::Lowering => (off_a, current_a, "lower"),
+        Valve::Lower => (off_a, current_a, "lower"),
     };
     Run {
         file: format!("flow_{name}_{port_pressure_bar:03.0}bar.csv"),
@@ -112,7 +112,7 @@ fn measured_lpm(valve: Valve, current_a: f64, port_pressure_bar: f64) -> f64 {
     let flow_lpm = (1.0 + flow_scale(valve)) * interpolate(table_2(valve), at_a);
     match valve {
         Valve::Lift => flow_lpm,
-        Valve::Lowering => -flow_lpm * (port_pressure_bar / LOWER_DROP_BAR).sqrt(),
+        Valve::Lower => -flow_lpm * (port_pressure_bar / LOWER_DROP_BAR).sqrt(),
     }
 }
 
@@ -130,9 +130,9 @@ fn interpolate(table: &[(f64, f64)], at: f64) -> f64 {
 #[test]
 fn the_measured_valve_is_table_5_s() {
     assert!((measured_lpm(Valve::Lift, 3.5, 70.0) - 37.27).abs() < 1e-9);
-    assert!((measured_lpm(Valve::Lowering, 3.5, 15.0) + 56.74).abs() < 1e-9);
-    assert_eq!(measured_lpm(Valve::Lowering, 1.25, 15.0), 0.0);
-    assert!(measured_lpm(Valve::Lowering, 1.26, 15.0) < 0.0);
+    assert!((measured_lpm(Valve::Lower, 3.5, 15.0) + 56.74).abs() < 1e-9);
+    assert_eq!(measured_lpm(Valve::Lower, 1.25, 15.0), 0.0);
+    assert!(measured_lpm(Valve::Lower, 1.26, 15.0) < 0.0);
 }
 
 #[test]

@@ -33,7 +33,7 @@ const HALVINGS: usize = 40;
 fn flow_lpm(model: &Model, valve: Valve, current_a: f64) -> f64 {
     let (port_bar, lift_a, lower_a, sign) = match valve {
         Valve::Lift => (LIFT_PORT_BAR, current_a, 0.0, 1.0),
-        Valve::Lowering => (LOWER_DROP_BAR, 0.0, current_a, -1.0),
+        Valve::Lower => (LOWER_DROP_BAR, 0.0, current_a, -1.0),
     };
     let rig = Rig::Flow {
         port_pressure_pa: pa_from_bar(port_bar),
@@ -46,7 +46,7 @@ fn flow_lpm(model: &Model, valve: Valve, current_a: f64) -> f64 {
 #[test]
 fn table_2_comes_out_of_the_flow_bench() {
     let model = hitch_model_file::nominal();
-    for valve in [Valve::Lift, Valve::Lowering] {
+    for valve in Valve::BOTH {
         for &(current_a, paper_lpm) in table_2(valve) {
             let model_lpm = flow_lpm(&model, valve, current_a);
             assert!(
@@ -69,7 +69,7 @@ fn the_largest_orifice_area_is_the_paper_s() {
         flows_lpm.map(move |flow_lpm| m3_s_from_lpm(flow_lpm) / speed_m_s * 1e6)
     };
     let areas_mm2 =
-        areas_mm2(Valve::Lift, LIFT_DROP_BAR).chain(areas_mm2(Valve::Lowering, LOWER_DROP_BAR));
+        areas_mm2(Valve::Lift, LIFT_DROP_BAR).chain(areas_mm2(Valve::Lower, LOWER_DROP_BAR));
     let largest_mm2 = areas_mm2.fold(0.0, f64::max);
     println!("largest orifice area: {largest_mm2:.3} mm2, in the paper {LARGEST_AREA_MM2} mm2");
     assert!((largest_mm2 / LARGEST_AREA_MM2 - 1.0).abs() < 1e-3);
@@ -113,8 +113,8 @@ fn table_5_is_found_by_the_identification() {
     assert_eq!(found.verdict, Verdict::Ambiguous);
     let mut expected = vec![
         ("lift-flow-scale", flow_scale(Valve::Lift)),
-        ("lower-flow-scale", flow_scale(Valve::Lowering)),
-        ("lower-threshold-shift", threshold_shift_a(Valve::Lowering)),
+        ("lower-flow-scale", flow_scale(Valve::Lower)),
+        ("lower-threshold-shift", threshold_shift_a(Valve::Lower)),
     ];
     for step in &found.steps {
         let id = step.effect.id();
@@ -129,7 +129,7 @@ fn table_5_is_found_by_the_identification() {
     assert!(expected.is_empty(), "not found: {expected:?}");
 
     let rebuilt = found.after.estimate.applied_to(&model);
-    for valve in [Valve::Lift, Valve::Lowering] {
+    for valve in Valve::BOTH {
         let flow = |current_a: f64| flow_lpm(&rebuilt, valve, current_a);
         let full_lpm = flow(HIGHEST_A);
         let opens_a = boundary_a(|current_a| flow(current_a) > HARDLY_LPM);
@@ -161,7 +161,7 @@ fn table_5_is_found_by_the_identification() {
             );
         }
         assert!((full_lpm - measured.saturation_lpm).abs() < 0.05);
-        if valve == Valve::Lowering {
+        if valve == Valve::Lower {
             assert!((opens_a - measured.threshold_a).abs() < 0.002);
         }
     }

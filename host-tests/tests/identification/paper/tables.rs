@@ -42,7 +42,7 @@ pub struct Measured {
 pub fn table_5(valve: Valve) -> Measured {
     let column = match valve {
         Valve::Lift => 1,
-        Valve::Lowering => 2,
+        Valve::Lower => 2,
     };
     let text = include_str!("../../../../model/paper/data/table5_measured.csv");
     let value = |name: &str| {
@@ -70,7 +70,7 @@ pub fn table_2(valve: Valve) -> &'static [(f64, f64)] {
     });
     match valve {
         Valve::Lift => &LIFT,
-        Valve::Lowering => &LOWER,
+        Valve::Lower => &LOWER,
     }
 }
 

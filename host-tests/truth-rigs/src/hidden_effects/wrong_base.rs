@@ -1,7 +1,6 @@
 //! Declared models that differ from the machine as a data sheet does.
 
-use hitch_model_file::Valve;
-use hitch_plant::{Constants, Model, ValveCurve};
+use hitch_plant::{Constants, Model, Valve, ValveCurve};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -36,7 +35,7 @@ pub fn declared(family: Family, seed: u64) -> Model {
 pub fn declared_within(family: Family, seed: u64, share: f64) -> Model {
     let mut random = Pcg64::seed_from_u64(seed ^ STREAM);
     let mut constants = starting_point(family).constants().clone();
-    for valve in [Valve::Lift, Valve::Lower] {
+    for valve in Valve::BOTH {
         let curve = &mut valve.of_mut(&mut constants).curve;
         *curve = wrong_curve(curve, share, &mut random);
     }

@@ -5,7 +5,7 @@
 //! ch. 4). H is 3 to 6 % of 3.3 A with dither, 8 to 12 % on plain direct current.
 
 use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
-use hitch_plant::{Channel, Currents, Effect, Parameter, ParameterKind, Valve};
+use hitch_plant::{Channel, Currents, Effect, Parameter, ParameterKind};
 
 /// Hysteresis of both solenoids.
 #[derive(Debug)]
@@ -83,10 +83,7 @@ impl CurrentStage for Play {
         let half_a = self.half_width_a;
         let before = self.spool;
         self.spool = currents.map(|valve, current_a| {
-            let spool_a = match valve {
-                Valve::Lift => before.lift_a,
-                Valve::Lowering => before.lower_a,
-            };
+            let spool_a = before.of(valve);
             spool_a.max(current_a - half_a).min(current_a + half_a)
         });
         self.spool

@@ -126,7 +126,7 @@ impl<S: Spool> CurrentStage for Sticking<S> {
         currents.map(|valve, current_a| {
             let spool = match valve {
                 Valve::Lift => &mut self.lift,
-                Valve::Lowering => &mut self.lowering,
+                Valve::Lower => &mut self.lowering,
             };
             spool.advance(friction, current_a, dt_s)
         })

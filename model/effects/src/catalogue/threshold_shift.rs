@@ -29,7 +29,7 @@ pub static LIFT: ThresholdShift = ThresholdShift {
 
 /// Threshold shift of the lowering valve.
 pub static LOWERING: ThresholdShift = ThresholdShift {
-    valve: Valve::Lowering,
+    valve: Valve::Lower,
     id: "lower-threshold-shift",
     title: "Shifted threshold of the lowering valve",
     shows: "lowering at low currents: flow and speed; on rising currents alone easily confused with hysteresis",

@@ -1,7 +1,6 @@
 //! The fit of the base model, and which constants it determined.
 
-use hitch_model_file::Valve;
-use hitch_plant::Model;
+use hitch_plant::{Model, Valve};
 use nalgebra::{DMatrix, DVector};
 
 use crate::base::descent::descend;

@@ -1,7 +1,6 @@
 //! A model with corrections of its constants and sensors applied.
 
-use hitch_model_file::Valve;
-use hitch_plant::{AddedEffect, Constants, Model, ValveCurve};
+use hitch_plant::{AddedEffect, Constants, Model, Valve, ValveCurve};
 use nalgebra::DVector;
 
 use crate::constants::parameter::Parameter;
@@ -47,7 +46,7 @@ fn corrected_constants(
             *(constant.place)(&mut constants) *= value.exp();
         }
     }
-    for valve in [Valve::Lift, Valve::Lower] {
+    for valve in Valve::BOTH {
         let curve = curve(&valve.of(declared).curve, valve, parameters, theta);
         valve.of_mut(&mut constants).curve = curve;
     }

@@ -1,8 +1,7 @@
 //! Corrections of the constants as values with intervals, for reports.
 
-use hitch_model_file::Valve;
-use hitch_plant::Model;
 use hitch_plant::units::lpm_from_m3_s;
+use hitch_plant::{Model, Valve};
 use nalgebra::DVector;
 
 use crate::constants::parameter::Parameter;
@@ -92,7 +91,7 @@ impl Fitted<'_> {
             }
             Parameter::Threshold(valve) => {
                 let declared = valve.of(self.declared.constants()).curve.threshold_a();
-                let name = format!("{}.threshold_a", valve.table());
+                let name = format!("{}.threshold_a", valve.key());
                 (name, "A", declared, Box::new(move |shift| declared + shift))
             }
             Parameter::Sensor(sensor) => {

@@ -1,7 +1,7 @@
 //! Unknowns of a fit of the base model, and the tolerances of data sheets.
 
-use hitch_model_file::{Constant, Role, Tolerance, Valve, fitted_constants};
-use hitch_plant::{Constants, Dynamics};
+use hitch_model_file::{Constant, Role, Tolerance, fitted_constants};
+use hitch_plant::{Constants, Dynamics, Valve};
 
 /// Tolerance of a threshold current, A, one sigma: coil, spring and overlap vary between valves.
 pub const THRESHOLD_SIGMA_A: f64 = 0.05;
@@ -59,8 +59,8 @@ impl Parameter {
     pub fn name(&self) -> Option<String> {
         match self {
             Self::Scalar(constant, _) => Some(constant.name()),
-            Self::Threshold(valve) => Some(format!("{}.current_a", valve.table())),
-            Self::Flow(valve, _) => Some(format!("{}.flow_lpm", valve.table())),
+            Self::Threshold(valve) => Some(format!("{}.current_a", valve.key())),
+            Self::Flow(valve, _) => Some(format!("{}.flow_lpm", valve.key())),
             Self::Sensor(_) => None,
         }
     }
@@ -82,7 +82,7 @@ pub fn parameters(declared: &Constants) -> Vec<Parameter> {
         .filter(|(constant, _)| *(constant.place)(&mut copy) > 0.0)
         .map(|(constant, tolerance)| Parameter::Scalar(constant, tolerance))
         .collect();
-    let valves = [Valve::Lift, Valve::Lower];
+    let valves = Valve::BOTH;
     let thresholds = valves.map(Parameter::Threshold);
     let flows = valves.into_iter().flat_map(|valve| {
         let curve = &valve.of(declared).curve;

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use hitch_campaign::{Bench, Run};
-use hitch_model_file::Valve;
-use hitch_plant::{Channel, Currents, Model};
+use hitch_plant::{Channel, Currents, Model, Valve};
 
 use crate::data::experiment::Experiment;
 use crate::data::ready_run::ReadyRun;

@@ -6,7 +6,9 @@
 //! current 0 is the threshold of the valve and 1 its full opening.
 
 use crate::design::plan::USUAL_OIL_C;
-use crate::design::template::{Load, RunTemplate, SegmentTemplate, StandTemplate, Template, Valve};
+use hitch_plant::Valve;
+
+use crate::design::template::{Load, RunTemplate, SegmentTemplate, StandTemplate, Template};
 
 /// Ramp of a step of the current, s: the fastest change of a current controller.
 const STEP_S: f64 = 0.01;

@@ -1,18 +1,9 @@
 //! A manoeuvre relative to the machine, and its conversion to currents, loads and pressures of one machine.
 
-use hitch_plant::Currents;
+use hitch_plant::{Currents, Valve};
 
 use crate::design::levels::{Levels, ValveRange};
 use crate::design::plan::{Manoeuvre, RunPlan, Segment, Stand};
-
-/// A valve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Valve {
-    /// The lift valve.
-    Lift,
-    /// The lowering valve.
-    Lower,
-}
 
 /// A load of the machine, see [`Levels`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,15 +100,9 @@ impl RunTemplate {
 
 impl SegmentTemplate {
     fn on(&self, levels: &Levels) -> Segment {
-        let of = |valve: Valve| match self.open {
-            Some((open, opening)) if open == valve => levels.range(valve).current_a(opening),
-            _ => 0.0,
-        };
+        let only = |(valve, opening)| Currents::only(valve, levels.range(valve).current_a(opening));
         Segment {
-            to: Currents {
-                lift_a: of(Valve::Lift),
-                lower_a: of(Valve::Lower),
-            },
+            to: self.open.map_or_else(Currents::default, only),
             ramp_s: self.ramp_s,
             stay_s: self.stay_s,
         }

@@ -15,54 +15,7 @@ use crate::hooks::place::Place;
 use crate::hooks::reading::Reading;
 use crate::hooks::signals::Signals;
 use crate::state::MechanicalState;
-
-/// One of the two solenoid valves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Valve {
-    /// The lift valve, pump to cylinder.
-    Lift,
-    /// The lowering valve, cylinder to tank.
-    Lowering,
-}
-
-/// The two coil currents, A.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Currents {
-    /// Lift solenoid, A.
-    pub lift_a: f64,
-    /// Lowering solenoid, A.
-    pub lower_a: f64,
-}
-
-impl Currents {
-    /// Applies a function to both currents.
-    #[inline(always)]
-    #[must_use]
-    pub fn map(self, mut change: impl FnMut(Valve, f64) -> f64) -> Self {
-        Self {
-            lift_a: change(Valve::Lift, self.lift_a),
-            lower_a: change(Valve::Lowering, self.lower_a),
-        }
-    }
-
-    /// Linear interpolation between these currents and others.
-    #[inline(always)]
-    #[must_use]
-    pub fn towards(self, to: Self, share: f64) -> Self {
-        Self {
-            lift_a: self.lift_a + (to.lift_a - self.lift_a) * share,
-            lower_a: self.lower_a + (to.lower_a - self.lower_a) * share,
-        }
-    }
-
-    /// Largest difference of a current, A.
-    #[inline(always)]
-    #[must_use]
-    pub fn largest_difference_a(self, other: Self) -> f64 {
-        let lift_a = (self.lift_a - other.lift_a).abs();
-        lift_a.max((self.lower_a - other.lower_a).abs())
-    }
-}
+use crate::valve::Currents;
 
 /// A stage between coil current and effective spool current; it may have state (hysteresis, lag).
 pub trait CurrentStage: DynClone + Send + Sync + std::fmt::Debug {

@@ -10,7 +10,7 @@ use crate::components::lag::Lag;
 use crate::constants::Dynamics;
 use crate::hooks::acting::{EVERY, kinds, with_kinds};
 use crate::hooks::effect::AddedEffect;
-use crate::hooks::effect_hooks::{Currents, EffectHooks, RunConditions};
+use crate::hooks::effect_hooks::{EffectHooks, RunConditions};
 use crate::hooks::place::Place;
 use crate::hooks::reading::Reading;
 use crate::hooks::signals::Signals;
@@ -23,6 +23,7 @@ use crate::solver::moment::Moment;
 use crate::solver::openings::Openings;
 use crate::solver::{dynamic, steady};
 use crate::state::{HitchRig, MechanicalState, Rig};
+use crate::valve::Currents;
 
 /// Most steps of the spools within one step of the quasi-static piston, while a current changes.
 const SPOOL_STEPS: f64 = 2.0;

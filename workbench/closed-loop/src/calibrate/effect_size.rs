@@ -1,7 +1,6 @@
 //! The size of an effect of a model.
 
-use hitch_plant::AddedEffect;
-use hitch_plant::Model;
+use hitch_plant::{AddedEffect, Model};
 
 /// First parameter of an effect of the model, in any form.
 pub fn found(model: &Model, id: &str) -> Option<f64> {

@@ -5,8 +5,8 @@ use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
 use hitch_input::source_file::SourceFile;
-use hitch_model_file::{Template, Valve};
-use hitch_plant::ValveCurve;
+use hitch_model_file::Template;
+use hitch_plant::{Valve, ValveCurve};
 
 use crate::base_model::data_sheet::{self, QUESTIONS};
 use crate::base_model::{flow_curve, linkage_table};
@@ -81,7 +81,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
             .set(name.trim(), value)
             .map_err(|why| Error::Usage(format!("--set {set}: {why}")))?;
     }
-    for (valve, path) in [Valve::Lift, Valve::Lower].into_iter().zip(curves) {
+    for (valve, path) in Valve::BOTH.into_iter().zip(curves) {
         if let Some(path) = path {
             template.set_curve(valve, flow_curve::of(&SourceFile::read_any(path)?)?);
         }
