@@ -159,6 +159,28 @@ fn no_change_of_the_function_steps() {
 }
 
 #[test]
+fn a_function_that_was_switched_off_is_resumed_without_a_step_and_a_lost_one_is_not() {
+    const IN_A_STEP: i32 = 90;
+    let mut bench = Bench::new(Function::Draft);
+    bench.run(1_000);
+    bench.inputs.function = Some(Count(Function::Position as i32));
+    bench.run(1_000);
+    assert_eq!(bench.layer.reason(), Some(Reason::Holds));
+    bench.inputs.function = Some(Count(Function::Draft as i32));
+    bench.draft = 20_000;
+    let held = bench.set_point;
+    assert!(bench.run(1_000) <= IN_A_STEP);
+    assert_eq!(bench.layer.reason(), Some(Reason::Draft));
+    assert!(bench.set_point > held, "draft raises in hard soil");
+    // A set point that is missing for a moment ends it for good, as a lost pin does.
+    let set_point = bench.inputs.draft_set_point.take();
+    bench.run(10);
+    bench.inputs.draft_set_point = set_point;
+    bench.run(1_000);
+    assert_eq!(bench.layer.reason(), Some(Reason::Holds));
+}
+
+#[test]
 fn the_guard_acts_in_the_soil_and_above_its_speed_only() {
     for (ground, wheel, draft, acts) in [
         (1_000, 2_000, SET, true),

@@ -200,73 +200,51 @@ fn a_soft_patch_slips_little_above_the_limit_and_is_left_at_the_depth() {
 /// Changes what is measured; the other arguments are what was measured when the fault began, and noise.
 type Change = fn(&mut Inputs, &Inputs, i32);
 
-type Fault = (&'static str, Option<Trouble>, Change);
+type Fault = (&'static str, Trouble, Change);
 
 /// Faults with their trouble.
 const FAULTS: [Fault; 11] = [
-    (
-        "left pin missing",
-        Some(Trouble::PinRange),
-        |inputs, _, _| inputs.left_pin = None,
-    ),
-    (
-        "left pin broken",
-        Some(Trouble::PinRange),
-        |inputs, _, _| {
-            inputs.left_pin = Some(SupplyShare(0));
-        },
-    ),
-    (
-        "right pin shorted",
-        Some(Trouble::PinRange),
-        |inputs, _, _| {
-            inputs.right_pin = Some(SupplyShare(100_000));
-        },
-    ),
+    ("left pin missing", Trouble::PinRange, |inputs, _, _| {
+        inputs.left_pin = None
+    }),
+    ("left pin broken", Trouble::PinRange, |inputs, _, _| {
+        inputs.left_pin = Some(SupplyShare(0));
+    }),
+    ("right pin shorted", Trouble::PinRange, |inputs, _, _| {
+        inputs.right_pin = Some(SupplyShare(100_000));
+    }),
     (
         "left pin without force",
-        Some(Trouble::PinsDisagree),
+        Trouble::PinsDisagree,
         |inputs, _, _| {
             inputs.left_pin = Some(SupplyShare(50_000));
         },
     ),
-    (
-        "left pin frozen",
-        Some(Trouble::PinFrozen),
-        |inputs, then, _| {
-            inputs.left_pin = then.left_pin;
-        },
-    ),
-    (
-        "both pins frozen",
-        Some(Trouble::PinFrozen),
-        |inputs, then, _| {
-            (inputs.left_pin, inputs.right_pin) = (then.left_pin, then.right_pin);
-        },
-    ),
-    ("left pin noisy", None, |inputs, _, noise| {
+    ("left pin frozen", Trouble::PinFrozen, |inputs, then, _| {
+        inputs.left_pin = then.left_pin;
+    }),
+    ("both pins frozen", Trouble::PinFrozen, |inputs, then, _| {
+        (inputs.left_pin, inputs.right_pin) = (then.left_pin, then.right_pin);
+    }),
+    ("left pin noisy", Trouble::PinNoisy, |inputs, _, noise| {
         inputs.left_pin = inputs.left_pin.map(|pin| pin + SupplyShare(noise));
     }),
-    (
-        "no ground speed",
-        Some(Trouble::GroundSpeed),
-        |inputs, _, _| inputs.ground_speed = None,
-    ),
-    (
-        "no wheel speed",
-        Some(Trouble::WheelSpeed),
-        |inputs, _, _| inputs.wheel_speed = None,
-    ),
+    ("no ground speed", Trouble::GroundSpeed, |inputs, _, _| {
+        inputs.ground_speed = None
+    }),
+    ("no wheel speed", Trouble::WheelSpeed, |inputs, _, _| {
+        inputs.wheel_speed = None
+    }),
     (
         "ground speed frozen",
-        Some(Trouble::SpeedFrozen),
+        Trouble::SpeedFrozen,
         |inputs, _, _| {
             inputs.ground_speed = inputs.ground_speed.map(|_| MillimetrePerSecond(1_790));
         },
     ),
     (
         "wheel speed frozen",
-        Some(Trouble::SpeedFrozen),
+        Trouble::SpeedFrozen,
         |inputs, _, _| {
             inputs.wheel_speed = inputs.wheel_speed.map(|_| MillimetrePerSecond(2_050));
         },
@@ -298,17 +276,17 @@ fn a_lost_or_stuck_sensor_moves_the_hitch_by_less_than_three_degrees_more_than_i
         let pass = pass(SoilPlan::varying(Texture::Medium), settings, 15.0, 3);
         let healthy = pass.drive(&hitch_model_file::dynamic(), &fitted(), |_, _| {});
         for (name, trouble, fault) in FAULTS {
-            let is_lost = name.contains("pin") && trouble.is_some();
+            let is_pin = name.contains("pin");
             let mut most = Motion::default();
             for time in 0..cases(3, 20) {
                 let fault_s = 5.0 + 0.23 * time as f64;
                 let samples = with_fault(fault_s, &pass, fault);
                 most = most.max(Motion::of(&samples, &healthy, (fault_s * 1e3) as usize));
                 let outputs = samples.last().unwrap().hitch.outputs;
-                assert_eq!(outputs.trouble, trouble, "{function:?}, {name}");
+                assert_eq!(outputs.trouble, Some(trouble), "{function:?}, {name}");
                 assert_eq!(outputs.fault, None);
                 let holds = outputs.reference == Some(Reason::Holds);
-                assert_eq!(holds, is_lost, "{name}: {outputs:?}");
+                assert_eq!(holds, is_pin, "{name}: {outputs:?}");
             }
             let Motion {
                 whole_deg,

@@ -6,14 +6,13 @@
 
 use hitch_quantities::calibration::field_parameters::{DepthParameters, DraftParameters};
 use hitch_quantities::fixed::{Divisor, mul_div};
-use hitch_quantities::units::{Micrometre, MilliHertz, Millisecond};
+use hitch_quantities::units::{Micrometre, Millisecond};
 use hitch_quantities::{Inputs, Trouble};
 
 use super::low_pass::LowPass;
+use super::noise_check::NoiseCheck;
 use super::plausibility::{Plausibility, Signal, Still};
 
-/// Low-pass on the changes of the depth: ten times the noise of a healthy sensor is found in 25 ms.
-const NOISE_CORNER: MilliHertz = MilliHertz(3_200);
 /// A quarter of the supply, as of a pin.
 const QUARTER: Divisor = Divisor::at_least_one(25_000);
 
@@ -21,9 +20,7 @@ const QUARTER: Divisor = Divisor::at_least_one(25_000);
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DepthSignal {
     filter: LowPass,
-    /// Depth of the last sample.
-    last: Option<Micrometre>,
-    noise: LowPass,
+    noise: NoiseCheck,
     still: Still,
     plausibility: Plausibility,
     in_soil: bool,
@@ -49,7 +46,12 @@ impl DepthSignal {
             .filter(|output| range.contains(output))
             .map(|output| mul_div((output - parameters.zero).0, parameters.span.0, QUARTER))
             .ok_or(Trouble::DepthRange)
-            .and_then(|depth| self.if_quiet(Micrometre(depth), parameters.noise_limit));
+            .and_then(|depth| {
+                let is_noisy = self.noise.is_noisy(depth, parameters.noise_limit.0);
+                (!is_noisy)
+                    .then_some(Micrometre(depth))
+                    .ok_or(Trouble::DepthNoisy)
+            });
         let still = (still, Trouble::DepthFrozen);
         let (depth, is_first) = match self.plausibility.step(depth, still, pins) {
             Ok(sample) => sample,
@@ -67,17 +69,6 @@ impl DepthSignal {
         };
         self.in_soil = depth > least;
         Signal::Measured(depth)
-    }
-
-    /// The depth of a sample, unless the samples are too noisy.
-    fn if_quiet(&mut self, depth: Micrometre, limit: Micrometre) -> Result<Micrometre, Trouble> {
-        let change = (depth - self.last.unwrap_or(depth)).magnitude();
-        self.last = Some(depth);
-        if self.noise.step(change.0, NOISE_CORNER) > limit.0 {
-            Err(Trouble::DepthNoisy)
-        } else {
-            Ok(depth)
-        }
     }
 
     /// Whether the implement is in the soil: from the dead band of the depth until it has left the ground.

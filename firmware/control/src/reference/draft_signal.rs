@@ -6,6 +6,7 @@ use hitch_quantities::units::{MilliHertz, Millisecond, Newton, SupplyShare};
 use hitch_quantities::{Inputs, Trouble};
 
 use super::low_pass::LowPass;
+use super::noise_check::NoiseCheck;
 use super::plausibility::{Plausibility, Signal, Still};
 
 /// A quarter of the supply: the swing of a pin at its span.
@@ -20,6 +21,8 @@ pub struct DraftSignal {
     filter: LowPass,
     left: Still,
     right: Still,
+    /// Of the left and the right pin.
+    noise: [NoiseCheck; 2],
     plausibility: Plausibility,
     in_soil: bool,
 }
@@ -36,7 +39,7 @@ impl DraftSignal {
         } else {
             Millisecond::ZERO
         };
-        let forces = forces(inputs, parameters);
+        let forces = self.if_quiet(inputs, parameters);
         let still = (still, Trouble::PinFrozen);
         match self.plausibility.step(forces, still, parameters) {
             Ok((draft, is_first)) => self.plausible(draft, is_first, moves, parameters),
@@ -48,6 +51,26 @@ impl DraftSignal {
     #[must_use]
     pub const fn is_in_soil(&self) -> bool {
         self.in_soil
+    }
+
+    /// The sum of the pins' forces, unless one of the pins is too noisy.
+    fn if_quiet(
+        &mut self,
+        inputs: &Inputs,
+        parameters: &DraftParameters,
+    ) -> Result<Newton, Trouble> {
+        let draft = forces(inputs, parameters)?;
+        let [left, right] = &mut self.noise;
+        let limit = parameters.noise_limit.0;
+        let noisy = |check: &mut NoiseCheck, pin: Option<SupplyShare>| {
+            pin.is_some_and(|pin| check.is_noisy(pin.0, limit))
+        };
+        let is_noisy = [noisy(left, inputs.left_pin), noisy(right, inputs.right_pin)];
+        if is_noisy.contains(&true) {
+            Err(Trouble::PinNoisy)
+        } else {
+            Ok(draft)
+        }
     }
 
     fn plausible(
@@ -174,6 +197,31 @@ mod tests {
             let after = newton(pins.run(100, good));
             assert!((after - before).abs() < 50, "{before} and {after} N");
         }
+    }
+
+    #[test]
+    fn a_pin_of_ten_times_the_noise_is_lost_and_a_blow_of_its_nominal_force_is_not() {
+        let mut random = fastrand::Rng::with_seed(1);
+        let mut signal = DraftSignal::default();
+        let mut run = |steps: i32, largest: i32, output: i32| {
+            (0..steps).fold(Draft::Suspect, |_, _| {
+                let mut pin =
+                    |largest: i32| Some(SupplyShare(output + random.i32(-largest..=largest)));
+                let inputs = Inputs {
+                    left_pin: pin(largest),
+                    right_pin: pin(173),
+                    ..Inputs::default()
+                };
+                signal.step(&inputs, false, &PARAMETERS)
+            })
+        };
+        for output in [55_000, 80_000, 55_000] {
+            for _ in 0..200 {
+                assert!(!matches!(run(1, 173, output), Draft::Lost(_)));
+            }
+            assert!(matches!(run(1, 173, output), Draft::Measured(_)));
+        }
+        assert_eq!(run(100, 1_732, 55_000), Draft::Lost(Trouble::PinNoisy));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! The depth that is held after a function has ended, until the lever takes over.
 //!
+//! A function that the operator has switched off may be selected again, which resumes it; one that has ended with its sensor is not.
+//!
 //! The lever takes over as after any lock, when it is moved through the hitch, and also when it is raised above it: whoever
 //! raises the lever wants the hitch to rise.
 
@@ -14,17 +16,25 @@ pub struct Hold {
     at: MilliDegree,
     lever_then: MilliDegree,
     lock: StartLock,
+    resumes: bool,
 }
 
 impl Hold {
-    /// Holds a set point from now on, with the lever where it is.
+    /// Holds a set point from now on, with the lever where it is. `resumes`: selecting a function ends it as well.
     #[must_use]
-    pub fn new(at: MilliDegree, lever: MilliDegree) -> Self {
+    pub fn new(at: MilliDegree, lever: MilliDegree, resumes: bool) -> Self {
         Self {
             at,
             lever_then: lever,
             lock: StartLock::default(),
+            resumes,
         }
+    }
+
+    /// Whether selecting a function ends it.
+    #[must_use]
+    pub const fn resumes(&self) -> bool {
+        self.resumes
     }
 
     /// The held set point.
@@ -48,7 +58,7 @@ mod tests {
 
     fn ends(at: i32, levers: impl Iterator<Item = i32>) -> bool {
         let mut levers = levers.map(MilliDegree);
-        let mut hold = Hold::new(MilliDegree(at), levers.next().unwrap());
+        let mut hold = Hold::new(MilliDegree(at), levers.next().unwrap(), false);
         levers.any(|lever| hold.is_over(lever, &PARAMETERS))
     }
 

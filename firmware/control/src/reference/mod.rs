@@ -21,6 +21,7 @@ pub mod in_work;
 pub mod lag_loop;
 pub mod limits;
 pub mod low_pass;
+pub mod noise_check;
 pub mod plausibility;
 pub mod received;
 pub mod selector;
@@ -209,6 +210,7 @@ impl ReferenceControl {
         let is_reached = self.is_reached(is_depth, inputs, calibration);
         let choice = Choice {
             function,
+            is_off: Function::from_code(inputs.function) == Function::Position,
             errors,
             is_reached,
             engagement: situation.engagement,
@@ -223,7 +225,7 @@ impl ReferenceControl {
         let was_slipping = self.reason == Some(Reason::Slip);
         self.active = match self.active {
             // What the guard has raised stays where it is when a speed is lost.
-            Active::Lever if was_slipping && slip.is_err() => choice.held(),
+            Active::Lever if was_slipping && slip.is_err() => choice.held(false),
             active => active.next(&choice, gains, &calibration.lock),
         };
         let slip = slip.ok().flatten();

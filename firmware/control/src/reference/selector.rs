@@ -5,8 +5,10 @@
 //! +-------+ ---------------------------> +----------+ -----------------------------------> +-------+
 //! | Lever |                              | Function |                                      | Holds |
 //! +-------+ <--------------------------- +----------+                                      +-------+
-//!   ^         above the ground                                                                |
-//!   +-----------------------------------------------------------------------------------------+
+//!   ^         above the ground              ^                                                 | |
+//!   |                                       +-------------------------------------------------+ |
+//!   |                                          switched off before, and selected again          |
+//!   +-------------------------------------------------------------------------------------------+
 //!                                           lever takes over
 //! ```
 //!
@@ -49,6 +51,8 @@ pub enum Active {
 pub struct Choice {
     /// Selected function; [`Function::Position`] as well if it lacks a set point.
     pub function: Function,
+    /// The operator has selected position control.
+    pub is_off: bool,
     /// Errors of draft or depth, while the sensors of the function are plausible.
     pub errors: Option<Errors>,
     /// Draft or depth will have reached the set point once the implement has followed the links.
@@ -87,17 +91,22 @@ impl Active {
                 }
                 _ => self,
             },
-            Self::Function(..) if !is_function || choice.lost => choice.held(),
+            Self::Function(..) if !is_function || choice.lost => {
+                choice.held(choice.is_off && !choice.lost)
+            }
             Self::Function(..) if !choice.in_soil => Self::Lever,
             Self::Function(function, _) => match choice.errors {
                 Some(errors) if function != choice.function => choice.begun(errors, gains),
                 _ => self,
             },
             Self::Holds(mut hold) => {
-                if hold.is_over(choice.lever, lock) {
-                    Self::Lever
-                } else {
-                    Self::Holds(hold)
+                let is_over = hold.is_over(choice.lever, lock);
+                match choice.errors {
+                    _ if is_over => Self::Lever,
+                    Some(errors) if hold.resumes() && is_function && choice.in_soil => {
+                        choice.begun(errors, gains)
+                    }
+                    _ => Self::Holds(hold),
                 }
             }
         }
@@ -109,7 +118,7 @@ impl Choice {
     fn engaged(&self, present: Active, is_function: bool, gains: Gains) -> Active {
         let is_held = self.engagement == Engagement::Held;
         match self.errors {
-            _ if is_function && self.lost => self.held(),
+            _ if is_function && self.lost => self.held(false),
             Some(errors) if is_function && self.takes_over(is_held) => self.begun(errors, gains),
             _ if is_held => present,
             _ => Active::Lever,
@@ -133,10 +142,10 @@ impl Choice {
         )
     }
 
-    /// The present depth, from now on.
+    /// The present depth, from now on; `resumes`: until a function is selected, too.
     #[must_use]
-    pub fn held(&self) -> Active {
-        Active::Holds(Hold::new(self.here(), self.lever))
+    pub fn held(&self, resumes: bool) -> Active {
+        Active::Holds(Hold::new(self.here(), self.lever, resumes))
     }
 
     /// The present depth: where position control moves the hitch, if that is near.

@@ -175,7 +175,7 @@ troubles! {
     FramesLost = NETWORK / 9,
     /// A draft pin: missing, out of range.
     DraftPinMissing = DRAFT / 31,
-    /// The draft pins disagree.
+    /// The draft pins disagree, or one is too noisy.
     DraftPins = DRAFT / 2,
     /// A draft pin stands still while the implement works.
     DraftPinFrozen = DRAFT / 9,

@@ -48,7 +48,7 @@ impl TroubleFinder {
         let is_lost = self.speeds.is_lost(trouble);
         let found = trouble.and_then(|trouble| match trouble {
             field::Trouble::PinRange => Some(Trouble::DraftPinMissing),
-            field::Trouble::PinsDisagree => Some(Trouble::DraftPins),
+            field::Trouble::PinsDisagree | field::Trouble::PinNoisy => Some(Trouble::DraftPins),
             field::Trouble::PinFrozen => Some(Trouble::DraftPinFrozen),
             field::Trouble::GroundSpeed => is_lost.then_some(Trouble::GroundSpeedLost),
             field::Trouble::WheelSpeed => is_lost.then_some(Trouble::WheelSpeedLost),

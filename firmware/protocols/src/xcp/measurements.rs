@@ -222,8 +222,8 @@ measurements! {
     depth_sensor: U16, "percent", 100, 0..=10_000 = inputs.depth_sensor.map_or(0, |output| output.0 / 10);
     /// What determines the set point: 0 the lever, an implement or quick lift, 1 draft, 2 mix, 3 depth limit, 4 floor, 5 ceiling, 6 slip, 7 above the ground, 8 holds, 9 ride damping, 10 engages, 11 depth.
     set_point_reason: U8, "", 1, 0..=11 = outputs.reference.map_or(0, |reason| i32::from(reason as u8));
-    /// Lost sensor of draft, depth or slip control: 0 none, 1 pin out of range, 2 pins disagree, 3 pin frozen, 4 ground speed, 5 wheel speed, 6 a speed frozen, 7 depth sensor out of range, 8 frozen, 9 noisy.
-    field_trouble: U8, "", 1, 0..=9 = outputs.trouble.map_or(0, |trouble| i32::from(trouble as u8));
+    /// Lost sensor of draft, depth or slip control: 0 none, 1 pin out of range, 2 pins disagree, 3 pin frozen, 4 ground speed, 5 wheel speed, 6 a speed frozen, 7 depth sensor out of range, 8 frozen, 9 noisy, 10 pin noisy.
+    field_trouble: U8, "", 1, 0..=10 = outputs.trouble.map_or(0, |trouble| i32::from(trouble as u8));
     /// Frames that were dropped because a queue was full.
     frames_dropped: U16, "", 1, 0..=65_535 = i32::from(ecu.frames_dropped);
     /// Noise of the rocker angle, root mean square over the last second.

@@ -247,6 +247,7 @@ fn lost_sensors_of_draft_and_slip_have_their_codes() {
             1,
         ),
         (field::Trouble::PinsDisagree, Trouble::DraftPins, 1879, 2, 1),
+        (field::Trouble::PinNoisy, Trouble::DraftPins, 1879, 2, 1),
         (
             field::Trouble::PinFrozen,
             Trouble::DraftPinFrozen,

@@ -13,7 +13,7 @@ use super::valve_table::ValveTable;
 use crate::units::{MicroLitrePerSecond, MilliAmp};
 
 /// Layout of the block that this firmware reads.
-pub const CALIBRATION_VERSION: u32 = 9;
+pub const CALIBRATION_VERSION: u32 = 10;
 
 /// Largest flow in a table: ten times the pump's, and far from where products saturate.
 pub(super) const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);

@@ -172,7 +172,7 @@ pub const CLASSES: &[Classified] = &[
     ]),
     row("draft", Class::Machine, &[
         "fitted", "left_zero", "right_zero", "left_span", "right_span", "output_min", "output_max", "difference",
-        "difference_share", "check_time", "healthy_time", "still_time", "frozen_time", "work_filter", "raised_filter", "soil_draft", "force_per_degree",
+        "difference_share", "check_time", "healthy_time", "still_time", "frozen_time", "noise_limit", "work_filter", "raised_filter", "soil_draft", "force_per_degree",
         "crossover", "length", "assumed_speed", "dead_band", "step", "margin",
     ]),
     row("depth", Class::Machine, &[

@@ -37,6 +37,8 @@ parameter_group! {
         still_time: Millisecond = 20, 5..=1_000;
         /// After which time it is lost.
         frozen_time: Millisecond = 500, 50..=10_000;
+        /// Mean change of a pin's output from a sample to the next above which the pin is too noisy: 4.4 times that of a healthy one. A load of the nominal force within a moment exceeds it for no longer than `check_time`.
+        noise_limit: SupplyShare = 500, 50..=25_000;
         /// Low-pass on the draft in work: a wavelength of 0.56 m at 1.8 m/s (US 5143159).
         work_filter: MilliHertz = 3_200, 100..=50_000;
         /// The same while the hitch moves above the ground, where the weight bounces on the tyres (US 5143159).

@@ -119,11 +119,13 @@ pub enum Trouble {
     DepthFrozen = 8,
     /// The depth sensor is too noisy.
     DepthNoisy = 9,
+    /// A draft pin is too noisy.
+    PinNoisy = 10,
 }
 
 impl Trouble {
     /// All of them, in the order of their codes, which begin at 1.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::PinRange,
         Self::PinsDisagree,
         Self::PinFrozen,
@@ -133,6 +135,7 @@ impl Trouble {
         Self::DepthRange,
         Self::DepthFrozen,
         Self::DepthNoisy,
+        Self::PinNoisy,
     ];
 
     /// Name as it appears in text outputs.
@@ -148,6 +151,7 @@ impl Trouble {
             Self::DepthRange => "depth-range",
             Self::DepthFrozen => "depth-frozen",
             Self::DepthNoisy => "depth-noisy",
+            Self::PinNoisy => "pin-noisy",
         }
     }
 }

@@ -91,7 +91,7 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::BusOff => "the ECU has left the bus after too many errors",
         Trouble::FramesLost => "the ECU has lost received frames",
         Trouble::DraftPinMissing => "a draft pin missing or out of range",
-        Trouble::DraftPins => "the draft pins disagree",
+        Trouble::DraftPins => "the draft pins disagree, or one is too noisy",
         Trouble::DraftPinFrozen => "a draft pin frozen",
         Trouble::GroundSpeedLost => "ground speed not received",
         Trouble::WheelSpeedLost => "wheel speed not received",
