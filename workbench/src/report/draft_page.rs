@@ -1,5 +1,6 @@
 //! The report of `hitch draft`: draft over speed by depth, and the tables.
 
+use hitch_draft::block::Block;
 use maud::{Markup, html};
 
 use super::chart::Stroke;
@@ -9,8 +10,6 @@ use crate::draft::DraftResult;
 
 /// Points of a drawn curve.
 const POINTS: u32 = 40;
-/// Metres of a run that are drawn as one point.
-const METRES: usize = 10;
 
 /// The whole page.
 #[must_use]
@@ -23,6 +22,7 @@ pub fn page(result: &DraftResult) -> String {
         h1 { (title) }
         p.lead { (result.sentence()) }
         (charts(result))
+        p.note { "Bars: mean and standard deviation of a run, with the hidden effects if there are any. The law is without them." }
         h2 { "Coefficients" }
         (page::table(&DraftResult::COEFFICIENTS, &rows(result.coefficient_rows())))
         h2 { "Hidden effects" }
@@ -32,10 +32,12 @@ pub fn page(result: &DraftResult) -> String {
     page::page(&title, &content)
 }
 
-/// A run as it is drawn: its mean depth, and its means of ten metres.
+/// A run as it is drawn: means of depth and speed, mean and standard deviation of the draft.
 struct Drive {
     depth_cm: f64,
-    points: Points,
+    speed_km_h: f64,
+    draft_kn: f64,
+    deviation_kn: f64,
 }
 
 /// A chart for each depth: runs whose mean depths differ by less than a tenth share one.
@@ -43,9 +45,9 @@ fn charts(result: &DraftResult) -> Markup {
     let mut drives = drives(result);
     drives.sort_by(|left, right| left.depth_cm.total_cmp(&right.depth_cm));
     let groups = drives.chunk_by(|left, right| right.depth_cm < 1.1 * left.depth_cm);
-    let speeds = drives.iter().flat_map(|drive| &drive.points.0);
+    let speeds = drives.iter().map(|drive| drive.speed_km_h);
     let (slowest, fastest) = speeds.fold((f64::INFINITY, 0.0_f64), |(low, high), speed| {
-        (low.min(*speed), high.max(*speed))
+        (low.min(speed), high.max(speed))
     });
     let at = |index: u32| slowest + (fastest - slowest) * f64::from(index) / f64::from(POINTS);
     let chart = |group: &[Drive]| {
@@ -58,20 +60,21 @@ fn charts(result: &DraftResult) -> Markup {
                 .unzip()
         };
         let law = |speed| DraftResult::draft(fit, depth_cm, speed);
-        // A gap separates the runs.
-        let mut measured: Points = Points::default();
-        for drive in group {
-            measured
-                .0
-                .extend(drive.points.0.iter().chain(drive.points.0.last()));
-            measured.1.extend(drive.points.1.iter().chain([&f64::NAN]));
-        }
+        // A gap separates the bars.
+        let bar = |drive: &Drive| {
+            let (low, high) = (
+                drive.draft_kn - drive.deviation_kn,
+                drive.draft_kn + drive.deviation_kn,
+            );
+            [low, drive.draft_kn, high, f64::NAN].map(|draft_kn| (drive.speed_km_h, draft_kn))
+        };
+        let measured: Points = group.iter().flat_map(bar).unzip();
         let line = |name: &str, stroke, points| (name.to_owned(), stroke, points);
         Drawn {
             caption: format!("Draft at {depth_cm:.0} cm"),
             axes: ["speed, km/h", "draft, kN"],
             lines: vec![
-                line("measured, means of 10 m", Stroke::Measured, measured),
+                line("measured", Stroke::Measured, measured),
                 line(
                     "law of the campaign",
                     Stroke::After,
@@ -92,30 +95,18 @@ fn charts(result: &DraftResult) -> Markup {
 }
 
 fn drives(result: &DraftResult) -> Vec<Drive> {
-    let in_soil: Vec<_> = result
-        .fit
-        .blocks
-        .iter()
-        .filter(|block| block.in_soil)
-        .collect();
-    let drive = |blocks: &[&hitch_draft::block::Block]| {
-        let mean = |blocks: &[&hitch_draft::block::Block],
-                    value: fn(&hitch_draft::block::Block) -> f64| {
+    let in_soil = result.fit.blocks.iter().filter(|block| block.in_soil);
+    let in_soil: Vec<&Block> = in_soil.collect();
+    let drive = |blocks: &[&Block]| {
+        let mean = |value: &dyn Fn(&Block) -> f64| {
             blocks.iter().map(|block| value(block)).sum::<f64>() / blocks.len() as f64
         };
-        let mut points: Vec<(f64, f64)> = blocks
-            .chunks(METRES)
-            .map(|part| {
-                (
-                    mean(part, |block| block.speeds[1]),
-                    1e-3 * mean(part, |block| block.draft_n),
-                )
-            })
-            .collect();
-        points.sort_by(|left, right| left.0.total_cmp(&right.0));
+        let draft_kn = mean(&|block| 1e-3 * block.draft_n);
         Drive {
-            depth_cm: mean(blocks, |block| block.depth_cm),
-            points: points.into_iter().unzip(),
+            depth_cm: mean(&|block| block.depth_cm),
+            speed_km_h: mean(&|block| block.speeds[1]),
+            draft_kn,
+            deviation_kn: mean(&|block| (1e-3 * block.draft_n - draft_kn).powi(2)).sqrt(),
         }
     };
     in_soil
