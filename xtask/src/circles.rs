@@ -12,6 +12,9 @@ use arm_build::workspace;
 
 use crate::sources::{Names, Source, below, module_of};
 
+/// Number of re-exports in a row that are followed; more than the workspace has.
+const RE_EXPORTS: usize = 8;
+
 /// The folders that hold crates, from the workspace's root.
 const FOLDERS: [&str; 5] = ["firmware", "host-tests", "model", "workbench", "xtask"];
 
@@ -135,7 +138,7 @@ impl Sources {
             .map(|(module, source)| {
                 let used = source.used.iter();
                 let files = used.filter_map(|path| {
-                    let file = self.definer(module, path, 8)?;
+                    let file = self.definer(module, path, RE_EXPORTS)?;
                     let (file, _) = self
                         .0
                         .get_key_value(&file)

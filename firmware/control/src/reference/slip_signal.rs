@@ -89,7 +89,7 @@ impl SlipSignal {
             [&self.ground, &self.wheel].map(|speed| speed.still >= parameters.frozen_time);
         let moves = ground.max(wheel) >= parameters.lowest_speed;
         // Two speeds that are both still say nothing about each other.
-        if !moves || !(ground_is_still && wheel_is_still) {
+        if !(moves && ground_is_still && wheel_is_still) {
             self.one_is_frozen = moves && (ground_is_still || wheel_is_still);
         }
         if self.one_is_frozen {
