@@ -101,9 +101,10 @@ def check_partnership(implement):
         data = message.encode(signals, scaling=True, strict=False)
         implement.bus.send(can.Message(arbitration_id=message.frame_id, data=data, is_extended_id=True))
 
-    send("RequiredFacilities", RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1)
+    send("RequiredFacilities", RequiredClass=3, RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1)
     facilities = received(implement, "TractorFacilities")
-    assert facilities == dict(RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1), facilities
+    fitted = dict(TractorClass=3, RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1)
+    assert facilities == fitted, facilities
     send("RepetitionRequest", RepeatedGroup=0xF0E4, RepetitionPeriod=0.1, Reserved=0xFFFFFF)
     numbers = [received(implement, "Heartbeat")["HeartbeatNumber"] for _ in range(4)]
     assert numbers == [251, 0, 1, 2], numbers

@@ -99,6 +99,17 @@ pub struct Id {
 }
 
 impl Id {
+    /// A message to all nodes.
+    #[must_use]
+    pub const fn broadcast(pgn: Pgn, priority: u8, source: u8) -> Self {
+        Self {
+            priority,
+            pgn,
+            destination: GLOBAL,
+            source,
+        }
+    }
+
     /// Unpacks.
     #[must_use]
     pub fn unpack(id: ExtendedId) -> Self {

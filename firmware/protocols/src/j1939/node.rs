@@ -18,7 +18,7 @@ use super::machine_speed::MachineSpeed;
 use super::name::Name;
 use super::reception::Reception;
 use super::remote::{Remote, RemoteControl, Surroundings};
-use super::request::{Acknowledgement, GroupRequest, RequestQueue, acknowledgement};
+use super::request::{Acknowledgement, GroupRequest, RequestQueue, acknowledged};
 use super::time::since_ms;
 use super::transport::Transport;
 use crate::can::Frame;
@@ -31,7 +31,7 @@ const STATUS_SPACING_MS: u32 = 20;
 const ASKING_SPACING_MS: u32 = 1_000;
 /// Characters of the software's identification at most.
 const LONGEST_IDENTIFICATION: usize = 40;
-/// Priority of the rear hitch status.
+/// Priority of the rear hitch status and of the facilities.
 const STATUS_PRIORITY: u8 = 3;
 /// Priority of the heartbeat.
 const HEARTBEAT_PRIORITY: u8 = 3;
@@ -86,6 +86,8 @@ pub struct Node {
     last_status: Option<([u8; 8], u32)>,
     /// When the time until in-work was sent last.
     work_sent_ms: Option<u32>,
+    /// The facilities were queued after the start.
+    facilities_told: bool,
 }
 
 impl Node {
@@ -114,6 +116,7 @@ impl Node {
             asked_for_claim_ms: None,
             last_status: None,
             work_sent_ms: None,
+            facilities_told: false,
         }
     }
 
@@ -235,11 +238,8 @@ impl Node {
                 }
             }
             Pgn::REQUIRED_FACILITIES if self.address().is_some() => {
-                self.requests.push(GroupRequest {
-                    group: Pgn::TRACTOR_FACILITIES,
-                    from: id.source,
-                    global: true,
-                })
+                self.requests
+                    .push(GroupRequest::of_all(Pgn::TRACTOR_FACILITIES));
             }
             _ => {}
         }
@@ -306,6 +306,11 @@ impl Node {
             self.unknown = None;
             return claim;
         };
+        if !self.facilities_told {
+            self.facilities_told = true;
+            self.requests
+                .push(GroupRequest::of_all(Pgn::TRACTOR_FACILITIES));
+        }
         claim
             .or_else(|| self.hitch_status(source, now_ms, status))
             .or_else(|| self.hitch_work(source, now_ms, status))
@@ -323,14 +328,14 @@ impl Node {
         let bytes = message.to_bytes();
         if let Some((last, sent_ms)) = self.last_status {
             let age_ms = since_ms(sent_ms, now_ms);
-            let changed = differs(&bytes, &last) && age_ms >= STATUS_SPACING_MS;
+            let changed = StatusMessage::differs(&bytes, &last) && age_ms >= STATUS_SPACING_MS;
             if !changed && age_ms < STATUS_PERIOD_MS {
                 return None;
             }
         }
         self.last_status = Some((bytes, now_ms));
         self.remote.reported(message.position);
-        Some(broadcast(Pgn::REAR_HITCH_STATUS, STATUS_PRIORITY, source).frame(bytes))
+        Some(Id::broadcast(Pgn::REAR_HITCH_STATUS, STATUS_PRIORITY, source).frame(bytes))
     }
 
     /// Time until the implement is in work, if there is a threshold.
@@ -342,7 +347,7 @@ impl Node {
             return None;
         }
         self.work_sent_ms = Some(now_ms);
-        let id = broadcast(Pgn::HITCH_WORK, DIAGNOSTIC_PRIORITY, source);
+        let id = Id::broadcast(Pgn::HITCH_WORK, DIAGNOSTIC_PRIORITY, source);
         Some(id.frame(time_until_work(status.time_until_work)))
     }
 
@@ -365,7 +370,7 @@ impl Node {
 
     fn beat(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
         let number = self.heartbeat.poll(now_ms)?;
-        let id = broadcast(Pgn::HEARTBEAT, HEARTBEAT_PRIORITY, source).pack();
+        let id = Id::broadcast(Pgn::HEARTBEAT, HEARTBEAT_PRIORITY, source).pack();
         Frame::data_frame(id.into(), &[number])
     }
 
@@ -407,7 +412,7 @@ impl Node {
         let message = match request.group {
             Pgn::REAR_HITCH_STATUS => {
                 let bytes = self.status_message(status, now_ms).to_bytes();
-                return Some(broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
+                return Some(Id::broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
             }
             Pgn::TRACTOR_FACILITIES => {
                 let bytes = facilities(
@@ -415,7 +420,7 @@ impl Node {
                     status.draft != Draft::NotFitted,
                     status.in_work != InWork::NotAvailable,
                 );
-                return Some(broadcast(request.group, DIAGNOSTIC_PRIORITY, source).frame(bytes));
+                return Some(Id::broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
             }
             Pgn::DM1 => self.diagnostics.dm1(),
             Pgn::DM2 => self.diagnostics.dm2(),
@@ -456,7 +461,7 @@ impl Node {
         for (target, byte) in bytes.iter_mut().zip(message) {
             *target = *byte;
         }
-        Some(broadcast(group, DIAGNOSTIC_PRIORITY, source).frame(bytes))
+        Some(Id::broadcast(group, DIAGNOSTIC_PRIORITY, source).frame(bytes))
     }
 }
 
@@ -466,27 +471,4 @@ fn identification(software: &[u8]) -> Message {
     let text = software.iter().take(LONGEST_IDENTIFICATION).copied();
     let message = core::iter::once(FIELDS).chain(text).chain([b'*']);
     message.take(LONGEST_MESSAGE).collect()
-}
-
-/// True if a status says something new. A position that trembles between two values doesn't, nor does the draft, which always
-/// changes.
-fn differs(status: &[u8; 8], last: &[u8; 8]) -> bool {
-    let [position, flags, force, _, _, rest @ ..] = status;
-    let [last_position, last_flags, last_force, _, _, last_rest @ ..] = last;
-    (flags, force, rest) != (last_flags, last_force, last_rest)
-        || position.abs_diff(*last_position) > 1
-}
-
-/// An acknowledgement; requests to everybody aren't acknowledged.
-fn acknowledged(control: Acknowledgement, request: &GroupRequest, source: u8) -> Option<Frame> {
-    (!request.global).then(|| acknowledgement(control, request, source))
-}
-
-const fn broadcast(pgn: Pgn, priority: u8, source: u8) -> Id {
-    Id {
-        priority,
-        pgn,
-        destination: GLOBAL,
-        source,
-    }
 }

@@ -5,6 +5,7 @@ mod claim;
 mod consent;
 mod diagnostics;
 mod engine;
+mod facilities;
 mod flood;
 mod heartbeat;
 mod machine_speed;
