@@ -7,6 +7,7 @@
 //! amount of work, and the number of answers per second is bounded for any bus traffic.
 
 mod address_book;
+mod asking;
 mod button_monitor;
 pub mod claim;
 pub mod diagnostics;
@@ -22,6 +23,7 @@ mod node;
 pub mod reception;
 pub mod remote;
 pub mod request;
+mod tim;
 mod time;
 pub mod transport;
 pub mod trouble;
@@ -34,5 +36,6 @@ pub use measured::MeasuredBroadcast;
 pub use name::{Name, NameFields};
 pub use node::{Node, PREFERRED_ADDRESS, Settings};
 pub use remote::Remote;
+pub use tim::{Authority, Automation, Operation};
 pub use trouble::{Trouble, Troubles};
 pub use trouble_finder::TroubleFinder;

@@ -4,11 +4,11 @@ use hitch_quantities::calibration::design_parameters::RemoteParameters;
 use hitch_quantities::units::{MillimetrePerSecond, RevolutionPerMinute};
 
 use super::address_book::AddressBook;
+use super::asking::Asking;
 use super::claim::AddressClaim;
 use super::diagnostics::{Diagnostics, LONGEST_MESSAGE, Message, Occurrences, Variant};
 use super::engine::EngineSpeed;
 use super::ground_speed::GroundSpeed;
-use super::heartbeat;
 use super::heartbeat::{Heartbeat, Monitor};
 use super::hitch::{
     Draft, HitchCommand, HitchStatus, InWork, StatusMessage, facilities, time_until_work,
@@ -19,6 +19,7 @@ use super::name::Name;
 use super::reception::Reception;
 use super::remote::{Remote, RemoteControl, Surroundings};
 use super::request::{Acknowledgement, GroupRequest, RequestQueue, acknowledged};
+use super::tim::{Authority, Said, Tim, View};
 use super::time::since_ms;
 use super::transport::Transport;
 use crate::can::Frame;
@@ -27,8 +28,6 @@ use crate::can::Frame;
 const STATUS_PERIOD_MS: u32 = 100;
 /// A status that has changed comes no closer to the last one than this, ms: a moving hitch changes it all the time.
 const STATUS_SPACING_MS: u32 = 20;
-/// Nobody is asked for a heartbeat, or for a claim, more often than this, ms.
-const ASKING_SPACING_MS: u32 = 1_000;
 /// Characters of the software's identification at most.
 const LONGEST_IDENTIFICATION: usize = 40;
 /// Priority of the rear hitch status and of the facilities.
@@ -75,19 +74,13 @@ pub struct Node {
     heartbeat: Heartbeat,
     /// The heartbeat of an implement.
     monitor: Option<Monitor>,
-    /// Who is to be asked for a heartbeat.
-    unwatched: Option<u8>,
-    /// When somebody was asked last.
-    asked_ms: Option<u32>,
-    /// Who is to be asked for its claim.
-    unknown: Option<u8>,
-    /// When somebody was asked for its claim last.
-    asked_for_claim_ms: Option<u32>,
+    asking: Asking,
     last_status: Option<([u8; 8], u32)>,
     /// When the time until in-work was sent last.
     work_sent_ms: Option<u32>,
     /// The facilities were queued after the start.
     facilities_told: bool,
+    tim: Tim,
 }
 
 impl Node {
@@ -110,13 +103,11 @@ impl Node {
             engine: EngineSpeed::default(),
             heartbeat: Heartbeat::default(),
             monitor: None,
-            unwatched: None,
-            asked_ms: None,
-            unknown: None,
-            asked_for_claim_ms: None,
+            asking: Asking::default(),
             last_status: None,
             work_sent_ms: None,
             facilities_told: false,
+            tim: Tim::default(),
         }
     }
 
@@ -141,6 +132,11 @@ impl Node {
     /// Takes the bounds of remote control; those of the nominal calibration unless told otherwise.
     pub fn bound_remote_control(&mut self, parameters: RemoteParameters) {
         self.remote.set_parameters(parameters);
+    }
+
+    /// Takes who may command the hitch by Tractor Implement Management; nobody unless told otherwise.
+    pub fn set_tim_authority(&mut self, authority: Authority) {
+        self.tim.set_authority(authority);
     }
 
     /// Engine speed; none while no engine tells it.
@@ -190,7 +186,7 @@ impl Node {
         if id.pgn == Pgn::ADDRESS_CLAIMED {
             let name = Name::from_bytes(*bytes);
             self.addresses.claimed(id.source, name);
-            self.unknown = self.unknown.filter(|&unknown| unknown != id.source);
+            self.asking.claimed(id.source);
             self.remote.claimed(id.source, name, now_ms);
             return self.claim.heard_claim(id.source, name, now_ms);
         }
@@ -237,6 +233,12 @@ impl Node {
                     self.heartbeat.asked();
                 }
             }
+            Pgn::TIM_CLIENT | Pgn::AUTHENTICATION_CLIENT if for_us => {
+                let name = self.addresses.name(id.source);
+                if let Some(command) = self.tim.receive(id, bytes, name, now_ms) {
+                    self.commanded(command, id.source, now_ms);
+                }
+            }
             Pgn::REQUIRED_FACILITIES if self.address().is_some() => {
                 self.requests
                     .push(GroupRequest::of_all(Pgn::TRACTOR_FACILITIES));
@@ -255,14 +257,14 @@ impl Node {
             self.remote_permitted && self.address().is_some() && !condemned && !too_fast;
         let name = self.addresses.name(source);
         if name.is_none() {
-            self.unknown = Some(source);
+            self.asking.for_claim(source);
         }
         let implement = name.filter(|name| name.is_implement());
         self.remote
             .command(command, source, implement, permitted, now_ms);
         let begins = before.is_none() && self.remote.owner().is_some();
         if begins || condemned {
-            self.unwatched = Some(source);
+            self.asking.for_heartbeat(source);
         }
     }
 
@@ -295,6 +297,7 @@ impl Node {
         };
         self.remote.update(status, around, now_ms);
         self.diagnostics.update(status.troubles);
+        self.tim.update(self.tim_view(status), now_ms);
         let claim = self.claim.poll(now_ms);
         let Some(source) = self.claim.address() else {
             // What was begun under an address ends with it.
@@ -302,8 +305,8 @@ impl Node {
             self.requests.clear();
             self.reception = Reception::default();
             self.heartbeat = Heartbeat::default();
-            self.unwatched = None;
-            self.unknown = None;
+            self.asking.forget();
+            self.tim.reset();
             return claim;
         };
         if !self.facilities_told {
@@ -315,11 +318,11 @@ impl Node {
             .or_else(|| self.hitch_status(source, now_ms, status))
             .or_else(|| self.hitch_work(source, now_ms, status))
             .or_else(|| self.beat(source, now_ms))
+            .or_else(|| self.tim(source, now_ms))
             .or_else(|| self.transport.poll(source, now_ms))
             .or_else(|| self.periodic_dm1(source, now_ms))
             .or_else(|| self.reception.poll(source, now_ms))
-            .or_else(|| self.ask_for_heartbeat(source, now_ms))
-            .or_else(|| self.ask_for_claim(source, now_ms))
+            .or_else(|| self.asking.poll(source, now_ms))
             .or_else(|| self.answer(source, now_ms, status))
     }
 
@@ -374,37 +377,31 @@ impl Node {
         Frame::data_frame(id.into(), &[number])
     }
 
-    fn ask_for_heartbeat(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
-        let spaced = self
-            .asked_ms
-            .is_none_or(|asked| since_ms(asked, now_ms) >= ASKING_SPACING_MS);
-        let destination = self.unwatched.filter(|_| spaced)?;
-        self.unwatched = None;
-        self.asked_ms = Some(now_ms);
-        let [a, b, c] = Pgn::HEARTBEAT.to_bytes();
-        let id = Id {
-            priority: DIAGNOSTIC_PRIORITY,
-            pgn: Pgn::REPETITION_RATE,
-            destination,
-            source,
-        };
-        Some(id.frame([a, b, c, heartbeat::PERIOD_MS as u8, 0, 0xFF, 0xFF, 0xFF]))
+    fn tim_view(&self, status: &HitchStatus) -> View {
+        let owner = self.remote.owner();
+        let name = owner.and_then(|owner| self.addresses.name(owner));
+        let is_client = name.is_some() && name == self.tim.client();
+        View {
+            exit: status.exit,
+            is_offered: self.remote.is_offered(),
+            stage: if is_client { self.remote_state() } else { 0 },
+            limit: self.remote.limit_status(status),
+            position: status
+                .position
+                .and_then(|position| u16::try_from(position.0).ok()),
+            reported: self.remote.last_reported(),
+        }
     }
 
-    fn ask_for_claim(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
-        let spaced = self
-            .asked_for_claim_ms
-            .is_none_or(|asked| since_ms(asked, now_ms) >= ASKING_SPACING_MS);
-        let destination = self.unknown.filter(|_| spaced)?;
-        self.unknown = None;
-        self.asked_for_claim_ms = Some(now_ms);
-        let id = Id {
-            priority: DIAGNOSTIC_PRIORITY,
-            pgn: Pgn::REQUEST,
-            destination,
-            source,
-        };
-        Frame::data_frame(id.pack().into(), &Pgn::ADDRESS_CLAIMED.to_bytes())
+    fn tim(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        let has_room = self.transport.has_room(GLOBAL);
+        match self.tim.poll(source, has_room, now_ms)? {
+            Said::Frame(frame) => Some(frame),
+            Said::Message(message) => {
+                let message = message.into_iter().collect();
+                self.send(Pgn::TIM_SERVER, &message, GLOBAL, source, now_ms)
+            }
+        }
     }
 
     fn answer(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {

@@ -60,6 +60,8 @@ pub enum Acknowledgement {
     Positive = 0,
     /// The group isn't supported.
     Negative = 1,
+    /// The sender may not ask for this.
+    AccessDenied = 2,
     /// Busy: repeat the request.
     CannotRespond = 3,
 }

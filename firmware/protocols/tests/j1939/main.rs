@@ -13,4 +13,5 @@ mod measured;
 mod messages;
 mod reception;
 mod remote;
+mod tim;
 mod transport;
