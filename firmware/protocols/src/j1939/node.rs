@@ -393,6 +393,8 @@ impl Node {
         }
     }
 
+    /// Not inlined, so that the frame of `poll` does not hold its message.
+    #[inline(never)]
     fn tim(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
         let has_room = self.transport.has_room(GLOBAL);
         match self.tim.poll(source, has_room, now_ms)? {
