@@ -28,6 +28,8 @@ use super::request::Acknowledgement;
 use super::time::since_ms;
 use crate::can::Frame;
 
+/// No client; as a NAME it would be no implement's.
+const NOBODY: Name = Name(0);
 /// The function "rear hitch".
 const REAR_HITCH: u8 = 0x43;
 /// Message codes.
@@ -77,7 +79,7 @@ const STATUS_PRIORITY: u8 = 4;
 /// Priority of the other messages.
 const PRIORITY: u8 = 6;
 /// Replies that wait; more are dropped, and their clients repeat the request.
-const MOST_REPLIES: usize = 4;
+const MOST_REPLIES: usize = 2;
 /// Interval between replies, ms; it bounds the bus load.
 const SPACING_MS: u32 = 5;
 
@@ -190,22 +192,25 @@ enum Reply {
     Version,
     Support,
     AssignmentStatus,
-    Assignment([u8; 8]),
+    /// Number of functions, and each with its result.
+    Assignment(u8, [u8; 6]),
     Function {
         counter: u8,
     },
     Refused {
         control: Acknowledgement,
-        group: Pgn,
+        authentication: bool,
         code: u8,
         to: u8,
     },
 }
 
 /// The server.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Tim {
-    authority: Authority,
+    operation: Option<Operation>,
+    /// The authenticated client, or [`NOBODY`].
+    client: Name,
     view: View,
     /// The authenticated client has the hitch.
     is_assigned: bool,
@@ -216,23 +221,39 @@ pub struct Tim {
     replied_ms: Option<u32>,
 }
 
+impl Default for Tim {
+    fn default() -> Self {
+        Self {
+            operation: None,
+            client: NOBODY,
+            view: View::default(),
+            is_assigned: false,
+            monitor: None,
+            heartbeat: Heartbeat::default(),
+            replies: Deque::new(),
+            replied_ms: None,
+        }
+    }
+}
+
 impl Tim {
     /// Takes what a maker adds.
     pub fn set_authority(&mut self, authority: Authority) {
-        if authority.client != self.authority.client {
+        let client = authority.client.unwrap_or(NOBODY);
+        if client != self.client {
             self.is_assigned = false;
             self.monitor = None;
         }
         if authority.operation.is_none() {
             self.heartbeat = Heartbeat::default();
         }
-        self.authority = authority;
+        (self.operation, self.client) = (authority.operation, client);
     }
 
     /// The NAME of the authenticated client.
     #[must_use]
-    pub const fn client(&self) -> Option<Name> {
-        self.authority.client
+    pub fn client(&self) -> Option<Name> {
+        Some(self.client).filter(|&client| client != NOBODY)
     }
 
     /// Lets time pass and takes in the state of the hitch. A client without a valid heartbeat loses the hitch.
@@ -243,7 +264,7 @@ impl Tim {
 
     /// Automation status of the rear hitch.
     #[must_use]
-    pub const fn automation(&self) -> Automation {
+    pub fn automation(&self) -> Automation {
         match (self.view.exit, self.view.limit) {
             (ExitCode::ControlFault | ExitCode::FunctionFault | ExitCode::Error, _) => {
                 return Automation::Fault;
@@ -252,7 +273,7 @@ impl Tim {
             (ExitCode::Clear, _) if self.view.is_offered => {}
             _ => return Automation::Unavailable,
         }
-        match (self.authority.client, self.view.stage, self.view.limit) {
+        match (self.client(), self.view.stage, self.view.limit) {
             (None, _, _) => Automation::NotReady,
             _ if !self.is_assigned => Automation::ReadyToEnable,
             (_, 2, _) => Automation::Pending,
@@ -271,16 +292,16 @@ impl Tim {
         name: Option<Name>,
         now_ms: u32,
     ) -> Option<HitchCommand> {
-        let is_client = name.is_some() && name == self.authority.client;
+        let is_client = name.is_some() && name == self.client();
         let [code, second, _, _, low, high, _, _] = *bytes;
         let refused = |control| Reply::Refused {
             control,
-            group: id.pgn,
+            authentication: id.pgn == Pgn::AUTHENTICATION_CLIENT,
             code,
             to: id.source,
         };
         if id.pgn == Pgn::AUTHENTICATION_CLIENT {
-            if self.authority.operation.is_none() {
+            if self.operation.is_none() {
                 self.reply(refused(Acknowledgement::Negative));
             }
             return None;
@@ -290,8 +311,8 @@ impl Tim {
             SUPPORT => self.reply(Reply::Support),
             ASSIGNMENT_STATUS => self.reply(Reply::AssignmentStatus),
             ASSIGNMENT => {
-                let response = self.assigned(bytes, is_client, now_ms);
-                self.reply(Reply::Assignment(response));
+                let reply = self.assigned(bytes, is_client, now_ms);
+                self.reply(reply);
             }
             CLIENT_STATUS if is_client => {
                 self.monitor = Monitor::heard(self.monitor, id.source, second, now_ms);
@@ -328,13 +349,11 @@ impl Tim {
     }
 
     /// The response to a request for assignments.
-    fn assigned(&mut self, bytes: &[u8; 8], is_client: bool, now_ms: u32) -> [u8; 8] {
+    fn assigned(&mut self, bytes: &[u8; 8], is_client: bool, now_ms: u32) -> Reply {
         let [_, count, patterns @ ..] = *bytes;
         let fits = (1..=MOST_FUNCTIONS).contains(&usize::from(count));
         let functions = if fits { count } else { 1 };
-        let mut response = [0xFF; 8];
-        let [code, number, results @ ..] = &mut response;
-        (*code, *number) = (ASSIGNMENT, functions);
+        let mut results = [0xFF; 6];
         let pairs = results.as_chunks_mut::<2>().0.iter_mut();
         let wanted = patterns.as_chunks::<2>().0.iter();
         for ([function, result], &[asked, information]) in
@@ -347,7 +366,7 @@ impl Tim {
                 _ => FUNCTION_NOT_SUPPORTED,
             };
         }
-        response
+        Reply::Assignment(functions, results)
     }
 
     fn assign(&mut self, kind: u8, is_client: bool, now_ms: u32) -> u8 {
@@ -372,7 +391,7 @@ impl Tim {
 
     /// The next message that is due: the server status, or a reply. `has_room`: a longer message can be sent.
     pub fn poll(&mut self, source: u8, has_room: bool, now_ms: u32) -> Option<Said> {
-        let status = self.authority.operation.and_then(|operation| {
+        let status = self.operation.and_then(|operation| {
             self.heartbeat.asked();
             let number = self.heartbeat.poll(now_ms)?;
             Some(self.server_status(number, operation))
@@ -393,7 +412,7 @@ impl Tim {
 
     fn server_status(&self, number: u8, operation: Operation) -> [u8; 8] {
         let automation = self.automation();
-        let lead = u8::from(self.authority.client.is_some());
+        let lead = u8::from(self.client().is_some());
         let system = if automation.is_active() { 5 } else { 1 };
         let server = automation.of_server();
         let state = (server << 4) | operation as u8;
@@ -406,8 +425,8 @@ impl Tim {
         let bytes = match reply {
             Reply::Version => [VERSION, 0, IMPLEMENTED, IMPLEMENTED, NO, NO, NO, NO],
             Reply::Support => [SUPPORT, 1, REAR_HITCH, 1, POSITION_ONLY, NO, NO, NO],
-            Reply::Assignment(bytes) => bytes,
-            Reply::AssignmentStatus => match self.authority.client {
+            Reply::Assignment(count, [a, b, c, d, e, f]) => [ASSIGNMENT, count, a, b, c, d, e, f],
+            Reply::AssignmentStatus => match self.client() {
                 Some(name) if self.is_assigned => {
                     let [a, b, c, d, e, f, g, h] = name.to_bytes();
                     let status = [
@@ -440,10 +459,15 @@ impl Tim {
             }
             Reply::Refused {
                 control,
-                group,
+                authentication,
                 code,
                 to,
             } => {
+                let group = if authentication {
+                    Pgn::AUTHENTICATION_CLIENT
+                } else {
+                    Pgn::TIM_CLIENT
+                };
                 let [a, b, c] = group.to_bytes();
                 let id = Id {
                     destination: to,
