@@ -10,52 +10,43 @@ const SPACING_MS: u32 = 1_000;
 /// Priority of a request.
 const PRIORITY: u8 = 6;
 
-/// A question: who is to be asked, and when somebody was asked last.
-#[derive(Clone, Copy, Debug, Default)]
-struct Question {
-    whom: Option<u8>,
-    asked_ms: Option<u32>,
+/// Who is to be asked now.
+fn next(whom: &mut Option<u8>, asked_ms: &mut Option<u32>, now_ms: u32) -> Option<u8> {
+    let is_spaced = asked_ms.is_none_or(|asked| since_ms(asked, now_ms) >= SPACING_MS);
+    let node = whom.take_if(|_| is_spaced)?;
+    *asked_ms = Some(now_ms);
+    Some(node)
 }
 
-impl Question {
-    /// Who is to be asked now.
-    fn next(&mut self, now_ms: u32) -> Option<u8> {
-        let is_spaced = self
-            .asked_ms
-            .is_none_or(|asked| since_ms(asked, now_ms) >= SPACING_MS);
-        let whom = self.whom.take_if(|_| is_spaced)?;
-        self.asked_ms = Some(now_ms);
-        Some(whom)
-    }
-}
-
-/// The two questions.
+/// The two questions: who is to be asked, and when somebody was asked last.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Asking {
-    heartbeat: Question,
-    claim: Question,
+    unwatched: Option<u8>,
+    heartbeat_ms: Option<u32>,
+    unknown: Option<u8>,
+    claim_ms: Option<u32>,
 }
 
 impl Asking {
     /// The node is to be asked for its heartbeat.
     pub const fn for_heartbeat(&mut self, node: u8) {
-        self.heartbeat.whom = Some(node);
+        self.unwatched = Some(node);
     }
 
     /// The node is to be asked for its claim.
     pub const fn for_claim(&mut self, node: u8) {
-        self.claim.whom = Some(node);
+        self.unknown = Some(node);
     }
 
     /// The node has claimed its address.
     pub fn claimed(&mut self, node: u8) {
-        self.claim.whom = self.claim.whom.filter(|&unknown| unknown != node);
+        self.unknown = self.unknown.filter(|&unknown| unknown != node);
     }
 
     /// Nobody is to be asked any more.
     pub const fn forget(&mut self) {
-        self.heartbeat.whom = None;
-        self.claim.whom = None;
+        self.unwatched = None;
+        self.unknown = None;
     }
 
     /// The next question that is due.
@@ -64,13 +55,13 @@ impl Asking {
             destination,
             ..Id::broadcast(pgn, PRIORITY, source)
         };
-        if let Some(node) = self.heartbeat.next(now_ms) {
+        if let Some(node) = next(&mut self.unwatched, &mut self.heartbeat_ms, now_ms) {
             let [a, b, c] = Pgn::HEARTBEAT.to_bytes();
             let period = heartbeat::PERIOD_MS as u8;
             let id = to(Pgn::REPETITION_RATE, node);
             return Some(id.frame([a, b, c, period, 0, 0xFF, 0xFF, 0xFF]));
         }
-        let node = self.claim.next(now_ms)?;
+        let node = next(&mut self.unknown, &mut self.claim_ms, now_ms)?;
         let id = to(Pgn::REQUEST, node).pack();
         Frame::data_frame(id.into(), &Pgn::ADDRESS_CLAIMED.to_bytes())
     }

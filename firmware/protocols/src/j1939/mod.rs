@@ -8,6 +8,7 @@
 
 mod address_book;
 mod asking;
+mod automation;
 mod button_monitor;
 pub mod claim;
 pub mod diagnostics;
@@ -29,6 +30,7 @@ pub mod transport;
 pub mod trouble;
 mod trouble_finder;
 
+pub use automation::{Automation, Operation};
 pub use diagnostics::Variant;
 pub use hitch::{Draft, ExitCode, HitchCommand, HitchStatus, InWork, Limit, LimitStatus};
 pub use id::{GLOBAL, Id, NULL, Pgn};
@@ -36,6 +38,6 @@ pub use measured::MeasuredBroadcast;
 pub use name::{Name, NameFields};
 pub use node::{Node, PREFERRED_ADDRESS, Settings};
 pub use remote::Remote;
-pub use tim::{Authority, Automation, Operation};
+pub use tim::Authority;
 pub use trouble::{Trouble, Troubles};
 pub use trouble_finder::TroubleFinder;

@@ -15,11 +15,12 @@
 //! [`super::remote`]: the same consent, bounds, time-outs and reasons.
 //!
 //! The layouts are from public sources that name the clauses of AEF 023: robolibs/machbus (`src/isobus/tim`), and
-//! AGRIForward/ROS2ISOBUS (`src/TIMClient`), which has been run against another maker's server. Motion commands (raise or
-//! lower until stop) are not supported. The place of the exit code in the function status is not public; there are ones.
+//! AGRIForward/ROS2ISOBUS (`src/TIMClient`), which was run against another server. Motion commands (raise or lower until
+//! stop) are not supported. The place of the exit code in the function status is not public; there are ones.
 
-use heapless::{Deque, Vec};
+use heapless::Vec;
 
+use super::automation::{Automation, Operation};
 use super::heartbeat::{Heartbeat, Monitor};
 use super::hitch::{ExitCode, HitchCommand, LimitStatus};
 use super::id::{Id, Pgn};
@@ -32,7 +33,7 @@ use crate::can::Frame;
 const NOBODY: Name = Name(0);
 /// The function "rear hitch".
 const REAR_HITCH: u8 = 0x43;
-/// Message codes.
+// Message codes.
 const ASSIGNMENT_STATUS: u8 = 0xF3;
 const SUPPORT: u8 = 0xF4;
 const ASSIGNMENT: u8 = 0xF5;
@@ -82,61 +83,6 @@ const PRIORITY: u8 = 6;
 const MOST_REPLIES: usize = 2;
 /// Interval between replies, ms; it bounds the bus load.
 const SPACING_MS: u32 = 5;
-
-/// Automation status of a function, 4 bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Automation {
-    /// Remote control is not offered, or the hitch is locked.
-    #[default]
-    Unavailable = 0x0,
-    /// No authenticated client.
-    NotReady = 0x1,
-    /// Authenticated, but not assigned.
-    ReadyToEnable = 0x2,
-    /// Assigned; the operator's consent is missing.
-    Enabled = 0x3,
-    /// The operator has consented.
-    Pending = 0x4,
-    /// Commanded by the client.
-    Active = 0x5,
-    /// As before; only lower values act.
-    ActiveLimitedHigh = 0x6,
-    /// As before; only higher values act.
-    ActiveLimitedLow = 0x7,
-    /// A fault.
-    Fault = 0xD,
-}
-
-impl Automation {
-    /// State of the server, whose values are fewer.
-    const fn of_server(self) -> u8 {
-        match self {
-            Self::Unavailable | Self::Fault => self as u8,
-            Self::NotReady | Self::ReadyToEnable => Self::NotReady as u8,
-            Self::Enabled | Self::Pending => Self::Enabled as u8,
-            Self::Active | Self::ActiveLimitedHigh | Self::ActiveLimitedLow => Self::Active as u8,
-        }
-    }
-
-    const fn is_active(self) -> bool {
-        self.of_server() == Self::Active as u8
-    }
-}
-
-/// State of the tractor that a lead server tells, 4 bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Operation {
-    /// The requirements of the others are not fulfilled.
-    NotFulfilled = 0,
-    /// Driving, the operator is present.
-    Normal = 1,
-    /// Standing, the operator is present.
-    Standstill = 2,
-    /// Standing, in the mode that the operator has chosen.
-    Stationary = 3,
-}
 
 /// What a maker with certificates adds; nothing by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -217,7 +163,8 @@ pub struct Tim {
     /// Its heartbeat.
     monitor: Option<Monitor>,
     heartbeat: Heartbeat,
-    replies: Deque<Reply, MOST_REPLIES>,
+    /// The oldest first.
+    replies: [Option<Reply>; MOST_REPLIES],
     replied_ms: Option<u32>,
 }
 
@@ -230,7 +177,7 @@ impl Default for Tim {
             is_assigned: false,
             monitor: None,
             heartbeat: Heartbeat::default(),
-            replies: Deque::new(),
+            replies: [None; MOST_REPLIES],
             replied_ms: None,
         }
     }
@@ -259,7 +206,12 @@ impl Tim {
     /// Lets time pass and takes in the state of the hitch. A client without a valid heartbeat loses the hitch.
     pub fn update(&mut self, view: View, now_ms: u32) {
         self.view = view;
-        self.is_assigned &= self.monitor.is_some_and(|monitor| monitor.is_alive(now_ms));
+        self.is_assigned &= self.is_alive(now_ms);
+    }
+
+    /// Whether the heartbeat of the client is valid.
+    fn is_alive(&self, now_ms: u32) -> bool {
+        self.monitor.is_some_and(|monitor| monitor.is_alive(now_ms))
     }
 
     /// Automation status of the rear hitch.
@@ -370,12 +322,11 @@ impl Tim {
     }
 
     fn assign(&mut self, kind: u8, is_client: bool, now_ms: u32) -> u8 {
-        let is_alive = self.monitor.is_some_and(|monitor| monitor.is_alive(now_ms));
         match kind {
             ASSIGN if !is_client => return CLIENT_NOT_CERTIFIED,
             ASSIGN => match self.automation() {
                 Automation::Unavailable | Automation::Fault => return FUNCTION_NOT_AVAILABLE,
-                _ if !is_alive => return FUNCTION_NOT_AVAILABLE,
+                _ if !self.is_alive(now_ms) => return FUNCTION_NOT_AVAILABLE,
                 _ => self.is_assigned = true,
             },
             RELEASE if is_client => self.is_assigned = false,
@@ -404,8 +355,9 @@ impl Tim {
             .replied_ms
             .is_none_or(|last| since_ms(last, now_ms) >= SPACING_MS);
         let is_ready = |reply: &Reply| is_spaced && (has_room || *reply != Reply::AssignmentStatus);
-        let reply = self.replies.front().copied().filter(is_ready)?;
-        self.replies.pop_front();
+        let [first, next] = self.replies;
+        let reply = first.filter(is_ready)?;
+        self.replies = [next, None];
         self.replied_ms = Some(now_ms);
         Some(self.said(reply, source))
     }
@@ -463,10 +415,9 @@ impl Tim {
                 code,
                 to,
             } => {
-                let group = if authentication {
-                    Pgn::AUTHENTICATION_CLIENT
-                } else {
-                    Pgn::TIM_CLIENT
+                let group = match authentication {
+                    true => Pgn::AUTHENTICATION_CLIENT,
+                    false => Pgn::TIM_CLIENT,
                 };
                 let [a, b, c] = group.to_bytes();
                 let id = Id {
@@ -481,8 +432,10 @@ impl Tim {
 
     /// Queues a reply; one that is queued is not added twice.
     fn reply(&mut self, reply: Reply) {
-        if self.replies.iter().all(|other| *other != reply) {
-            let _ = self.replies.push_back(reply);
+        if !self.replies.contains(&Some(reply))
+            && let Some(free) = self.replies.iter_mut().find(|reply| reply.is_none())
+        {
+            *free = Some(reply);
         }
     }
 
@@ -491,6 +444,6 @@ impl Tim {
         self.is_assigned = false;
         self.monitor = None;
         self.heartbeat = Heartbeat::default();
-        self.replies.clear();
+        self.replies = [None; MOST_REPLIES];
     }
 }
