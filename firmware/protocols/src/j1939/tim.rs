@@ -415,9 +415,10 @@ impl Tim {
                 code,
                 to,
             } => {
-                let group = match authentication {
-                    true => Pgn::AUTHENTICATION_CLIENT,
-                    false => Pgn::TIM_CLIENT,
+                let group = if authentication {
+                    Pgn::AUTHENTICATION_CLIENT
+                } else {
+                    Pgn::TIM_CLIENT
                 };
                 let [a, b, c] = group.to_bytes();
                 let id = Id {
