@@ -50,6 +50,12 @@ class Implement:
         assert data == bytes([255, round(percent / 0.4), 255, 255, 255, 255, 255, 255])
         self.bus.send(can.Message(arbitration_id=message.frame_id, data=data, is_extended_id=True))
 
+    def send(self, name, **signals):
+        """A message of the DBC."""
+        message = self.database.get_message_by_name(name)
+        data = message.encode(signals, scaling=True, strict=False, padding=True)
+        self.bus.send(can.Message(arbitration_id=message.frame_id, data=data, is_extended_id=True))
+
     def commanded(self, percent, until, what, seconds=10.0):
         """Commands ten times a second until a status is as wanted. A new set point keeps the rhythm."""
 
@@ -95,19 +101,39 @@ def received(implement, name, seconds=1.0):
 
 def check_partnership(implement):
     """What there is to be had is said, and who asks for the heartbeat gets it ten times a second."""
-
-    def send(name, **signals):
-        message = implement.database.get_message_by_name(name)
-        data = message.encode(signals, scaling=True, strict=False)
-        implement.bus.send(can.Message(arbitration_id=message.frame_id, data=data, is_extended_id=True))
-
-    send("RequiredFacilities", RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1)
+    send = implement.send
+    send("RequiredFacilities", RequiredClass=3, RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1)
     facilities = received(implement, "TractorFacilities")
-    assert facilities == dict(RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1), facilities
+    fitted = dict(TractorClass="not available", RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1)
+    assert facilities == fitted, facilities
     send("RepetitionRequest", RepeatedGroup=0xF0E4, RepetitionPeriod=0.1, Reserved=0xFFFFFF)
     numbers = [received(implement, "Heartbeat")["HeartbeatNumber"] for _ in range(4)]
     assert numbers == [251, 0, 1, 2], numbers
     print(f"facilities and heartbeat: {numbers}")
+
+
+def check_management(implement):
+    """Tractor Implement Management is refused: nobody has been authenticated."""
+    send = implement.send
+    send("TimClient", TimClientMessage=246, TimClientVersion=2, TimClientLowestVersion=1)
+    version = received(implement, "TimServer")
+    assert version["TimVersionError"] == 0 and version["TimVersion"] == version["TimLowestVersion"] == 1, version
+    request = dict(TimRequests=1, TimRequestedFunction=0x43, TimRequestInformation=31, TimRequest="assign")
+    send("TimClient", TimClientMessage=245, **request)
+    refusal = received(implement, "TimServer")
+    found = refusal["TimAssignedFunction"], refusal["TimAssignment"], refusal["TimAssignmentReason"]
+    assert found == (0x43, "not successful", "client not certified"), refusal
+    ready = dict(TimRequestCounter=1, TimRequestMessage=0, TimRequestReserved=0xFFFF, TimRearHitchRequest=645.11)
+    send("TimClient", TimClientMessage=0x43, **ready)
+    denied = shared.wait_for(lambda: acknowledgement(implement), "acknowledgement")
+    assert denied == bytes([2, 0x43, 0xFF, 0xFF, 0x26, 0x00, 0x24, 0x00]), denied
+    print(f"management: {found[1]}, {found[2]}")
+
+
+def acknowledgement(implement):
+    """The bytes of an acknowledgement to the implement, if one comes."""
+    message = implement.bus.recv(0.2)
+    return message.data if message is not None and message.arbitration_id == 0x18E82680 else None
 
 
 def main():
@@ -119,6 +145,7 @@ def main():
     status = shared.wait_for(lambda: at_rest(implement), "hitch at rest")
     check_rhythm(implement)
     check_partnership(implement)
+    check_management(implement)
     here = status["RearHitchPosition"]
     assert status["RearHitchLimitStatus"] == "operator limited"
     assert status["RearDraft"] == 335350 and status["RearHitchInWork"] == "not available"

@@ -18,8 +18,10 @@ const MENDED_BY: u8 = 8;
 /// Own heartbeat.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Heartbeat {
-    /// Last number and time of the next one; `None` if it was not requested.
-    last: Option<(u8, u32)>,
+    /// Last number.
+    last: u8,
+    /// When it was sent; `None` before the first.
+    sent_ms: Option<u32>,
     asked: bool,
 }
 
@@ -31,14 +33,14 @@ impl Heartbeat {
 
     /// The number that is due.
     pub fn poll(&mut self, now_ms: u32) -> Option<u8> {
-        let number = match self.last {
+        self.last = match self.sent_ms {
             _ if !self.asked => return None,
             None => FIRST,
-            Some((_, sent_ms)) if since_ms(sent_ms, now_ms) < PERIOD_MS => return None,
-            Some((last, _)) => following(last),
+            Some(sent_ms) if since_ms(sent_ms, now_ms) < PERIOD_MS => return None,
+            Some(_) => following(self.last),
         };
-        self.last = Some((number, now_ms));
-        Some(number)
+        self.sent_ms = Some(now_ms);
+        Some(self.last)
     }
 }
 

@@ -252,13 +252,25 @@ impl StatusMessage {
             exit: ExitCode::from_bits(exit),
         }
     }
+
+    /// True if a status says something new. A position that trembles between two values doesn't, nor does the draft, which always
+    /// changes.
+    #[must_use]
+    pub fn differs(status: &[u8; 8], last: &[u8; 8]) -> bool {
+        let [position, flags, force, _, _, rest @ ..] = status;
+        let [last_position, last_flags, last_force, _, _, last_rest @ ..] = last;
+        (flags, force, rest) != (last_flags, last_force, last_rest)
+            || position.abs_diff(*last_position) > 1
+    }
 }
 
 /// What there is of the facilities of a tractor (ISO 11783-7, tractor facilities response): the position of the rear
-/// hitch, its in-work indication if `has_in_work`, its draft if `has_draft`, and, if `is_commanded`, its commands and their limit status. A bit that is 0 promises
-/// nothing.
+/// hitch, its in-work indication if `has_in_work`, its draft if `has_draft`, and, if `is_commanded`, its commands and
+/// their limit status. The class is "not available": a hitch alone has no class of ISO 11783-9, each of which begins with
+/// power, speed and PTO. A bit that is 0 promises nothing; the indicator in byte 8 says that reserved bits are 0.
 #[must_use]
 pub const fn facilities(is_commanded: bool, has_draft: bool, has_in_work: bool) -> [u8; 8] {
+    const NO_CLASS: u8 = 0b1100_0000;
     let commands = if is_commanded { 0b1000_1000 } else { 0 };
     let draft = if has_draft { 0b0000_0100 } else { 0 };
     let position = if has_in_work {
@@ -266,7 +278,7 @@ pub const fn facilities(is_commanded: bool, has_draft: bool, has_in_work: bool) 
     } else {
         0b1000_0000
     };
-    [0, position, draft, commands, 0, 0, 0, 0]
+    [NO_CLASS, position, draft, commands, 0, 0, 0, 0]
 }
 
 /// Time until the implement is in work, in bytes 1 and 2: a millisecond a bit, and 65535 while it is not on its way there. The

@@ -48,6 +48,12 @@ impl Pgn {
     pub const REQUIRED_FACILITIES: Self = Self(0xFE08);
     /// Available tractor facilities.
     pub const TRACTOR_FACILITIES: Self = Self(0xFE09);
+    /// Tractor Implement Management, server to client.
+    pub const TIM_SERVER: Self = Self(0x2300);
+    /// Tractor Implement Management, client to server.
+    pub const TIM_CLIENT: Self = Self(0x2400);
+    /// Authentication for Tractor Implement Management, client to server.
+    pub const AUTHENTICATION_CLIENT: Self = Self(0x6F00);
     /// Proprietary B: currents and rocker angle.
     pub const HITCH_MOTION: Self = Self(0xFF45);
     /// Proprietary B: pressures and supply.
@@ -99,6 +105,17 @@ pub struct Id {
 }
 
 impl Id {
+    /// A message to all nodes.
+    #[must_use]
+    pub const fn broadcast(pgn: Pgn, priority: u8, source: u8) -> Self {
+        Self {
+            priority,
+            pgn,
+            destination: GLOBAL,
+            source,
+        }
+    }
+
     /// Unpacks.
     #[must_use]
     pub fn unpack(id: ExtendedId) -> Self {

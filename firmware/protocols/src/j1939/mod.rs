@@ -7,6 +7,8 @@
 //! amount of work, and the number of answers per second is bounded for any bus traffic.
 
 mod address_book;
+mod asking;
+mod automation;
 mod button_monitor;
 pub mod claim;
 pub mod diagnostics;
@@ -22,11 +24,13 @@ mod node;
 pub mod reception;
 pub mod remote;
 pub mod request;
+mod tim;
 mod time;
 pub mod transport;
 pub mod trouble;
 mod trouble_finder;
 
+pub use automation::{Automation, Operation};
 pub use diagnostics::Variant;
 pub use hitch::{Draft, ExitCode, HitchCommand, HitchStatus, InWork, Limit, LimitStatus};
 pub use id::{GLOBAL, Id, NULL, Pgn};
@@ -34,5 +38,6 @@ pub use measured::MeasuredBroadcast;
 pub use name::{Name, NameFields};
 pub use node::{Node, PREFERRED_ADDRESS, Settings};
 pub use remote::Remote;
+pub use tim::Authority;
 pub use trouble::{Trouble, Troubles};
 pub use trouble_finder::TroubleFinder;

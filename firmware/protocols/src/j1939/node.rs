@@ -4,11 +4,11 @@ use hitch_quantities::calibration::design_parameters::RemoteParameters;
 use hitch_quantities::units::{MillimetrePerSecond, RevolutionPerMinute};
 
 use super::address_book::AddressBook;
+use super::asking::Asking;
 use super::claim::AddressClaim;
 use super::diagnostics::{Diagnostics, LONGEST_MESSAGE, Message, Occurrences, Variant};
 use super::engine::EngineSpeed;
 use super::ground_speed::GroundSpeed;
-use super::heartbeat;
 use super::heartbeat::{Heartbeat, Monitor};
 use super::hitch::{
     Draft, HitchCommand, HitchStatus, InWork, StatusMessage, facilities, time_until_work,
@@ -18,7 +18,8 @@ use super::machine_speed::MachineSpeed;
 use super::name::Name;
 use super::reception::Reception;
 use super::remote::{Remote, RemoteControl, Surroundings};
-use super::request::{Acknowledgement, GroupRequest, RequestQueue, acknowledgement};
+use super::request::{Acknowledgement, GroupRequest, RequestQueue, acknowledged};
+use super::tim::{Authority, Said, Tim, View};
 use super::time::since_ms;
 use super::transport::Transport;
 use crate::can::Frame;
@@ -27,11 +28,9 @@ use crate::can::Frame;
 const STATUS_PERIOD_MS: u32 = 100;
 /// A status that has changed comes no closer to the last one than this, ms: a moving hitch changes it all the time.
 const STATUS_SPACING_MS: u32 = 20;
-/// Nobody is asked for a heartbeat, or for a claim, more often than this, ms.
-const ASKING_SPACING_MS: u32 = 1_000;
 /// Characters of the software's identification at most.
 const LONGEST_IDENTIFICATION: usize = 40;
-/// Priority of the rear hitch status.
+/// Priority of the rear hitch status and of the facilities.
 const STATUS_PRIORITY: u8 = 3;
 /// Priority of the heartbeat.
 const HEARTBEAT_PRIORITY: u8 = 3;
@@ -75,17 +74,13 @@ pub struct Node {
     heartbeat: Heartbeat,
     /// The heartbeat of an implement.
     monitor: Option<Monitor>,
-    /// Who is to be asked for a heartbeat.
-    unwatched: Option<u8>,
-    /// When somebody was asked last.
-    asked_ms: Option<u32>,
-    /// Who is to be asked for its claim.
-    unknown: Option<u8>,
-    /// When somebody was asked for its claim last.
-    asked_for_claim_ms: Option<u32>,
+    asking: Asking,
     last_status: Option<([u8; 8], u32)>,
     /// When the time until in-work was sent last.
     work_sent_ms: Option<u32>,
+    /// The facilities were queued after the start.
+    facilities_told: bool,
+    tim: Tim,
 }
 
 impl Node {
@@ -108,12 +103,11 @@ impl Node {
             engine: EngineSpeed::default(),
             heartbeat: Heartbeat::default(),
             monitor: None,
-            unwatched: None,
-            asked_ms: None,
-            unknown: None,
-            asked_for_claim_ms: None,
+            asking: Asking::default(),
             last_status: None,
             work_sent_ms: None,
+            facilities_told: false,
+            tim: Tim::default(),
         }
     }
 
@@ -138,6 +132,11 @@ impl Node {
     /// Takes the bounds of remote control; those of the nominal calibration unless told otherwise.
     pub fn bound_remote_control(&mut self, parameters: RemoteParameters) {
         self.remote.set_parameters(parameters);
+    }
+
+    /// Takes who may command the hitch by Tractor Implement Management; nobody unless told otherwise.
+    pub fn set_tim_authority(&mut self, authority: Authority) {
+        self.tim.set_authority(authority);
     }
 
     /// Engine speed; none while no engine tells it.
@@ -187,7 +186,7 @@ impl Node {
         if id.pgn == Pgn::ADDRESS_CLAIMED {
             let name = Name::from_bytes(*bytes);
             self.addresses.claimed(id.source, name);
-            self.unknown = self.unknown.filter(|&unknown| unknown != id.source);
+            self.asking.claimed(id.source);
             self.remote.claimed(id.source, name, now_ms);
             return self.claim.heard_claim(id.source, name, now_ms);
         }
@@ -234,12 +233,15 @@ impl Node {
                     self.heartbeat.asked();
                 }
             }
+            Pgn::TIM_CLIENT | Pgn::AUTHENTICATION_CLIENT if for_us => {
+                let name = self.addresses.name(id.source);
+                if let Some(command) = self.tim.receive(id, bytes, name, now_ms) {
+                    self.commanded(command, id.source, now_ms);
+                }
+            }
             Pgn::REQUIRED_FACILITIES if self.address().is_some() => {
-                self.requests.push(GroupRequest {
-                    group: Pgn::TRACTOR_FACILITIES,
-                    from: id.source,
-                    global: true,
-                })
+                self.requests
+                    .push(GroupRequest::of_all(Pgn::TRACTOR_FACILITIES));
             }
             _ => {}
         }
@@ -255,14 +257,14 @@ impl Node {
             self.remote_permitted && self.address().is_some() && !condemned && !too_fast;
         let name = self.addresses.name(source);
         if name.is_none() {
-            self.unknown = Some(source);
+            self.asking.for_claim(source);
         }
         let implement = name.filter(|name| name.is_implement());
         self.remote
             .command(command, source, implement, permitted, now_ms);
         let begins = before.is_none() && self.remote.owner().is_some();
         if begins || condemned {
-            self.unwatched = Some(source);
+            self.asking.for_heartbeat(source);
         }
     }
 
@@ -295,6 +297,7 @@ impl Node {
         };
         self.remote.update(status, around, now_ms);
         self.diagnostics.update(status.troubles);
+        self.tim.update(self.tim_view(status), now_ms);
         let claim = self.claim.poll(now_ms);
         let Some(source) = self.claim.address() else {
             // What was begun under an address ends with it.
@@ -302,19 +305,24 @@ impl Node {
             self.requests.clear();
             self.reception = Reception::default();
             self.heartbeat = Heartbeat::default();
-            self.unwatched = None;
-            self.unknown = None;
+            self.asking.forget();
+            self.tim.reset();
             return claim;
         };
+        if !self.facilities_told {
+            self.facilities_told = true;
+            self.requests
+                .push(GroupRequest::of_all(Pgn::TRACTOR_FACILITIES));
+        }
         claim
             .or_else(|| self.hitch_status(source, now_ms, status))
             .or_else(|| self.hitch_work(source, now_ms, status))
             .or_else(|| self.beat(source, now_ms))
+            .or_else(|| self.tim(source, now_ms))
             .or_else(|| self.transport.poll(source, now_ms))
             .or_else(|| self.periodic_dm1(source, now_ms))
             .or_else(|| self.reception.poll(source, now_ms))
-            .or_else(|| self.ask_for_heartbeat(source, now_ms))
-            .or_else(|| self.ask_for_claim(source, now_ms))
+            .or_else(|| self.asking.poll(source, now_ms))
             .or_else(|| self.answer(source, now_ms, status))
     }
 
@@ -323,14 +331,14 @@ impl Node {
         let bytes = message.to_bytes();
         if let Some((last, sent_ms)) = self.last_status {
             let age_ms = since_ms(sent_ms, now_ms);
-            let changed = differs(&bytes, &last) && age_ms >= STATUS_SPACING_MS;
+            let changed = StatusMessage::differs(&bytes, &last) && age_ms >= STATUS_SPACING_MS;
             if !changed && age_ms < STATUS_PERIOD_MS {
                 return None;
             }
         }
         self.last_status = Some((bytes, now_ms));
         self.remote.reported(message.position);
-        Some(broadcast(Pgn::REAR_HITCH_STATUS, STATUS_PRIORITY, source).frame(bytes))
+        Some(Id::broadcast(Pgn::REAR_HITCH_STATUS, STATUS_PRIORITY, source).frame(bytes))
     }
 
     /// Time until the implement is in work, if there is a threshold.
@@ -342,7 +350,7 @@ impl Node {
             return None;
         }
         self.work_sent_ms = Some(now_ms);
-        let id = broadcast(Pgn::HITCH_WORK, DIAGNOSTIC_PRIORITY, source);
+        let id = Id::broadcast(Pgn::HITCH_WORK, DIAGNOSTIC_PRIORITY, source);
         Some(id.frame(time_until_work(status.time_until_work)))
     }
 
@@ -365,41 +373,37 @@ impl Node {
 
     fn beat(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
         let number = self.heartbeat.poll(now_ms)?;
-        let id = broadcast(Pgn::HEARTBEAT, HEARTBEAT_PRIORITY, source).pack();
+        let id = Id::broadcast(Pgn::HEARTBEAT, HEARTBEAT_PRIORITY, source).pack();
         Frame::data_frame(id.into(), &[number])
     }
 
-    fn ask_for_heartbeat(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
-        let spaced = self
-            .asked_ms
-            .is_none_or(|asked| since_ms(asked, now_ms) >= ASKING_SPACING_MS);
-        let destination = self.unwatched.filter(|_| spaced)?;
-        self.unwatched = None;
-        self.asked_ms = Some(now_ms);
-        let [a, b, c] = Pgn::HEARTBEAT.to_bytes();
-        let id = Id {
-            priority: DIAGNOSTIC_PRIORITY,
-            pgn: Pgn::REPETITION_RATE,
-            destination,
-            source,
-        };
-        Some(id.frame([a, b, c, heartbeat::PERIOD_MS as u8, 0, 0xFF, 0xFF, 0xFF]))
+    fn tim_view(&self, status: &HitchStatus) -> View {
+        let owner = self.remote.owner();
+        let name = owner.and_then(|owner| self.addresses.name(owner));
+        let is_client = name.is_some() && name == self.tim.client();
+        View {
+            exit: status.exit,
+            is_offered: self.remote.is_offered(),
+            stage: if is_client { self.remote_state() } else { 0 },
+            limit: self.remote.limit_status(status),
+            position: status
+                .position
+                .and_then(|position| u16::try_from(position.0).ok()),
+            reported: self.remote.last_reported(),
+        }
     }
 
-    fn ask_for_claim(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
-        let spaced = self
-            .asked_for_claim_ms
-            .is_none_or(|asked| since_ms(asked, now_ms) >= ASKING_SPACING_MS);
-        let destination = self.unknown.filter(|_| spaced)?;
-        self.unknown = None;
-        self.asked_for_claim_ms = Some(now_ms);
-        let id = Id {
-            priority: DIAGNOSTIC_PRIORITY,
-            pgn: Pgn::REQUEST,
-            destination,
-            source,
-        };
-        Frame::data_frame(id.pack().into(), &Pgn::ADDRESS_CLAIMED.to_bytes())
+    /// Not inlined, so that the frame of `poll` does not hold its message.
+    #[inline(never)]
+    fn tim(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        let has_room = self.transport.has_room(GLOBAL);
+        match self.tim.poll(source, has_room, now_ms)? {
+            Said::Frame(frame) => Some(frame),
+            Said::Message(message) => {
+                let message = message.into_iter().collect();
+                self.send(Pgn::TIM_SERVER, &message, GLOBAL, source, now_ms)
+            }
+        }
     }
 
     fn answer(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
@@ -407,7 +411,7 @@ impl Node {
         let message = match request.group {
             Pgn::REAR_HITCH_STATUS => {
                 let bytes = self.status_message(status, now_ms).to_bytes();
-                return Some(broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
+                return Some(Id::broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
             }
             Pgn::TRACTOR_FACILITIES => {
                 let bytes = facilities(
@@ -415,7 +419,7 @@ impl Node {
                     status.draft != Draft::NotFitted,
                     status.in_work != InWork::NotAvailable,
                 );
-                return Some(broadcast(request.group, DIAGNOSTIC_PRIORITY, source).frame(bytes));
+                return Some(Id::broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
             }
             Pgn::DM1 => self.diagnostics.dm1(),
             Pgn::DM2 => self.diagnostics.dm2(),
@@ -456,7 +460,7 @@ impl Node {
         for (target, byte) in bytes.iter_mut().zip(message) {
             *target = *byte;
         }
-        Some(broadcast(group, DIAGNOSTIC_PRIORITY, source).frame(bytes))
+        Some(Id::broadcast(group, DIAGNOSTIC_PRIORITY, source).frame(bytes))
     }
 }
 
@@ -466,27 +470,4 @@ fn identification(software: &[u8]) -> Message {
     let text = software.iter().take(LONGEST_IDENTIFICATION).copied();
     let message = core::iter::once(FIELDS).chain(text).chain([b'*']);
     message.take(LONGEST_MESSAGE).collect()
-}
-
-/// True if a status says something new. A position that trembles between two values doesn't, nor does the draft, which always
-/// changes.
-fn differs(status: &[u8; 8], last: &[u8; 8]) -> bool {
-    let [position, flags, force, _, _, rest @ ..] = status;
-    let [last_position, last_flags, last_force, _, _, last_rest @ ..] = last;
-    (flags, force, rest) != (last_flags, last_force, last_rest)
-        || position.abs_diff(*last_position) > 1
-}
-
-/// An acknowledgement; requests to everybody aren't acknowledged.
-fn acknowledged(control: Acknowledgement, request: &GroupRequest, source: u8) -> Option<Frame> {
-    (!request.global).then(|| acknowledgement(control, request, source))
-}
-
-const fn broadcast(pgn: Pgn, priority: u8, source: u8) -> Id {
-    Id {
-        priority,
-        pgn,
-        destination: GLOBAL,
-        source,
-    }
 }

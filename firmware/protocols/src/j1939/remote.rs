@@ -348,6 +348,12 @@ impl RemoteControl {
         self.reported = raw;
     }
 
+    /// The position that was put on the bus last, raw.
+    #[must_use]
+    pub const fn last_reported(&self) -> u8 {
+        self.reported
+    }
+
     /// What is asked for, inside the bounds.
     #[must_use]
     pub fn remote(&self) -> Remote {

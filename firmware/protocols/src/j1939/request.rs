@@ -40,6 +40,18 @@ impl GroupRequest {
     }
 }
 
+impl GroupRequest {
+    /// A request whose answer goes to all: one that is queued answers all of its kind.
+    #[must_use]
+    pub const fn of_all(group: Pgn) -> Self {
+        Self {
+            group,
+            from: GLOBAL,
+            global: true,
+        }
+    }
+}
+
 /// Kind of acknowledgement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -48,6 +60,8 @@ pub enum Acknowledgement {
     Positive = 0,
     /// The group isn't supported.
     Negative = 1,
+    /// The sender may not ask for this.
+    AccessDenied = 2,
     /// Busy: repeat the request.
     CannotRespond = 3,
 }
@@ -63,6 +77,12 @@ pub fn acknowledgement(control: Acknowledgement, request: &GroupRequest, source:
         source,
     };
     id.frame([control as u8, 0xFF, 0xFF, 0xFF, request.from, a, b, c])
+}
+
+/// An acknowledgement; requests to everybody aren't acknowledged.
+#[must_use]
+pub fn acknowledged(control: Acknowledgement, request: &GroupRequest, source: u8) -> Option<Frame> {
+    (!request.global).then(|| acknowledgement(control, request, source))
 }
 
 /// Queue of requests.

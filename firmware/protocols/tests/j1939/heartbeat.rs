@@ -1,9 +1,8 @@
-//! Heartbeats, the node's own and an implement's, and the facilities that it promises.
+//! Heartbeats, the node's own and an implement's.
 
 use hitch_protocols::j1939::hitch::StatusMessage;
-use hitch_protocols::j1939::{Draft, ExitCode, HitchCommand, InWork, Pgn, Remote, Variant};
-use hitch_quantities::calibration::design_parameters::RemoteParameters;
-use hitch_quantities::units::{Count, PerMille};
+use hitch_protocols::j1939::{ExitCode, HitchCommand, Pgn, Remote, Variant};
+use hitch_quantities::units::PerMille;
 
 use crate::bus::{Bus, OTHER, OURS};
 
@@ -149,38 +148,4 @@ fn one_that_stops_on_purpose_is_missed_by_nobody() {
     beat(&mut bus, 255);
     command(&mut bus, 20);
     assert_eq!(bus.node.remote(), ACTIVE);
-}
-
-#[test]
-fn facilities_are_told_who_asks_or_says_what_it_needs() {
-    let mut bus = Bus::claimed(Variant::Iso11783);
-    bus.ask(Pgn::TRACTOR_FACILITIES, 0xFF);
-    bus.run(10);
-    // Position in byte 2; commands and their limit status in byte 4.
-    let expected = [0, 0x80, 0, 0x88, 0, 0, 0, 0];
-    assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), expected);
-    bus.receive(Pgn::REQUIRED_FACILITIES, 0xFF, OTHER, &[0xFF; 8]);
-    bus.run(10);
-    assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), expected);
-    bus.node.bound_remote_control(RemoteParameters {
-        consent: Count(0),
-        ..RemoteParameters::NOMINAL
-    });
-    bus.ask(Pgn::TRACTOR_FACILITIES, 0xFF);
-    bus.run(10);
-    let without_commands = [0, 0x80, 0, 0, 0, 0, 0, 0];
-    assert_eq!(
-        bus.take(Pgn::TRACTOR_FACILITIES)[0].data(),
-        without_commands
-    );
-    bus.status.draft = Draft::Lost;
-    bus.ask(Pgn::TRACTOR_FACILITIES, 0xFF);
-    bus.run(10);
-    let with_draft = [0, 0x80, 0b100, 0, 0, 0, 0, 0];
-    assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), with_draft);
-    bus.status.in_work = InWork::Error;
-    bus.ask(Pgn::TRACTOR_FACILITIES, 0xFF);
-    bus.run(10);
-    let with_in_work = [0, 0xC0, 0b100, 0, 0, 0, 0, 0];
-    assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), with_in_work);
 }
