@@ -1,5 +1,6 @@
 //! Draft, mix, depth limit and slip guard: the controller with hitch, tractor and field.
 
+use hitch_closed_loop::field::{FieldSample, Settings};
 use hitch_controller::Controller;
 use hitch_field::draft::Texture;
 use hitch_field::soil::{SoilPlan, Stretch};
@@ -12,7 +13,6 @@ use hitch_quantities::{Calibration, Function, Inputs, Reason, Trouble, ValidCali
 use hitch_workbench::field_loop::pass::{
     Comparison, DRAFT_N, LINK_DEPTH_M, Pass, fitted, fitted_with,
 };
-use hitch_workbench::field_loop::rig::{FieldSample, Settings};
 use host_tests::seeds::cases;
 use host_tests::trace;
 

@@ -13,7 +13,7 @@ use hitch_quantities::{Calibration, Function, Inputs, ValidCalibration};
 use rayon::prelude::*;
 
 use super::figures::Figures;
-use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings};
+use hitch_closed_loop::field::{FieldRig, FieldSample, RAISED_DEG, Settings};
 
 /// Ground speed of the work, m/s.
 pub const SPEED_M_S: f64 = 1.8;

@@ -9,7 +9,7 @@ use hitch_quantities::{Inputs, ValidCalibration};
 
 use super::figures::{Spread, activations};
 use super::pass::LINK_DEPTH_M;
-use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings};
+use hitch_closed_loop::field::{FieldRig, FieldSample, RAISED_DEG, Settings};
 
 /// Ground speed, m/s.
 const SPEED_M_S: f64 = 2.7;
