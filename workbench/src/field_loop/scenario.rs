@@ -14,17 +14,16 @@ use hitch_quantities::{Function, ValidCalibration};
 
 use super::field_figure::FieldFigure;
 use super::figures::Spread;
-use super::pass::{Comparison, DEPTH_M, DRAFT_N, LINK_DEPTH_M, Pass, SPEED_M_S};
+use super::pass::{Comparison, DEPTH_M, DRAFT_N, Pass, SPEED_M_S};
 use super::transport::{Ride, RideComparison, class_c};
 use super::undulation::{self, DepthFigures};
 use hitch_closed_loop::Sample;
-use hitch_closed_loop::field::Coupling;
-use hitch_closed_loop::field::{FieldRig, FieldSample, RAISED_DEG, Settings, TOUCH_DEG, fitted};
+use hitch_closed_loop::field::{
+    Coupling, FieldRig, FieldSample, LINK_DEPTH_M, RAISED_DEG, Settings, check_reach, fitted,
+};
 
 /// Number of seeds of soil and noise over which figures are means.
 const SEEDS: u64 = 4;
-/// Deepest links that a scenario asks for, m.
-const DEEPEST_M: f64 = 0.30;
 
 /// A scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -75,14 +74,7 @@ pub fn drive(
     calibration: &ValidCalibration,
     first_seed: u64,
 ) -> Result<FieldRun, String> {
-    let coupling = Coupling::new(model, TOUCH_DEG, 0.0);
-    if !coupling.reaches(DEEPEST_M) || !coupling.reaches(coupling.depth_m(RAISED_DEG)) {
-        return Err(format!(
-            "scenarios of the field need links that reach from {RAISED_DEG} degrees to {:.0} cm below the height at \
-             {TOUCH_DEG} degrees; this model's do not",
-            DEEPEST_M * 100.0
-        ));
-    }
+    check_reach(model).map_err(|error| error.to_string())?;
     let calibration = &fitted(calibration, |_| {}).map_err(|error| error.to_string())?;
     Ok(match scenario {
         FieldScenario::Draft => draft(model, calibration, first_seed),

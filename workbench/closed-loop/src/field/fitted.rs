@@ -4,7 +4,7 @@ use hitch_quantities::units::{Count, PerMille};
 use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
 /// The calibration is invalid with the functions on.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("the calibration is invalid with all functions on: {0:?}")]
 pub struct NotFitted(CalibrationError);
 

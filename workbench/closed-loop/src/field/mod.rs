@@ -12,7 +12,7 @@ mod fitted;
 mod rig;
 mod settings;
 
-pub use coupling::Coupling;
+pub use coupling::{Coupling, OutOfReach, RAISED_DEG, TOUCH_DEG, check_reach};
 pub use fitted::{NotFitted, fitted};
-pub use rig::{FieldRig, FieldSample, RAISED_DEG, Start, TOUCH_DEG};
+pub use rig::{FieldRig, FieldSample, LINK_DEPTH_M, Start};
 pub use settings::Settings;

@@ -7,14 +7,12 @@ use hitch_plant::Model;
 use hitch_quantities::units::{MillimetrePerSecond, SupplyShare};
 use hitch_quantities::{Inputs, ValidCalibration};
 
-use super::coupling::Coupling;
+use super::coupling::{Coupling, RAISED_DEG, TOUCH_DEG};
 use super::settings::Settings;
 use crate::closed_loop::{ClosedLoop, Sample};
 
-/// Rocker angle at which the share touches the ground, degree.
-pub const TOUCH_DEG: f64 = 95.0;
-/// Rocker angle of the raised hitch at the start, degree.
-pub const RAISED_DEG: f64 = 125.0;
+/// Depth of the links, m, with which a plough works at 25 cm in loam: the body sinks by the rest (docs/field.md).
+pub const LINK_DEPTH_M: f64 = 0.228;
 /// Output of the depth sensor over its supply at the ground, 1: `depth.zero` of a new machine.
 const DEPTH_ZERO: f64 = 0.25;
 /// Depth that adds the whole supply to it, m: four times `depth.span` of a new machine.
