@@ -31,7 +31,7 @@ fn orders(lever_deg: f64, function: FunctionOrder) -> Orders {
             soil: SoilOrder::Medium,
             varies: true,
             ground: GroundOrder::Flat,
-            soft_patch: false,
+            soft_patches: 0,
             speed_m_s: 1.8,
             function,
             draft_n: DRAFT_N,
@@ -106,12 +106,8 @@ fn a_soft_patch_comes_in_front_and_the_slip_raises_the_implement_on_it() {
     let mut pair = Pair::new(&machine, &wanted, RAISED_DEG);
     drive(&mut pair, &wanted, 20);
     let before = drive(&mut pair, &wanted, 5);
-    let press = |wanted: &mut Orders, down| {
-        wanted.field.as_mut().expect("a field").soft_patch = down;
-    };
-    press(&mut wanted, true);
+    wanted.field.as_mut().expect("a field").soft_patches += 1;
     let [_, pressed] = pair.advance(&wanted, 100);
-    press(&mut wanted, false);
     let now = field(&pressed).now.as_ref().expect("a state");
     let first = now.ground.soft.iter().position(|soft| *soft);
     let first_m = now.ground.from_m + now.ground.step_m * first.expect("a soft patch") as f64;

@@ -96,9 +96,10 @@ pub struct FieldOrders {
     pub varies: bool,
     /// Shape of the ground; as it is at the start.
     pub ground: GroundOrder,
-    /// A button: its press lays a soft patch of 20 m in front of the tractor.
+    /// Number of times that a soft patch of 20 m was asked for: one more lays it in front of the tractor. A count is not lost
+    /// between two requests, as a short press would be.
     #[serde(default)]
-    pub soft_patch: bool,
+    pub soft_patches: u32,
     /// Demanded ground speed, m/s.
     pub speed_m_s: f64,
     /// Function of the hitch.

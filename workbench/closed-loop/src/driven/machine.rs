@@ -1,13 +1,13 @@
 //! The models and calibrations of the closed loop.
 
 use hitch_plant::{LinkageError, Model};
-use hitch_quantities::units::Count;
+use hitch_quantities::units::{Count, MilliDegree};
 use hitch_quantities::{Calibration, ValidCalibration};
 
 use super::orders::Orders;
 use crate::calibrate::{CalibrateError, calibrate};
 use crate::closed_loop::with_dynamics;
-use crate::field::{NotFitted, OutOfReach, check_reach, fitted};
+use crate::field::{NotFitted, OutOfReach, TOUCH_DEG, check_reach, fitted};
 
 /// The plant, and both calibrations.
 #[derive(Debug, Clone)]
@@ -144,6 +144,13 @@ fn working(
     [initial, rebuilt]: [&ValidCalibration; 2],
 ) -> Result<[ValidCalibration; 2], NoField> {
     check_reach(plant)?;
-    let with_sensors = |calibration| fitted(calibration, |changed| changed.depth.fitted = Count(1));
+    let with_sensors = |calibration| {
+        fitted(calibration, |changed| {
+            changed.depth.fitted = Count(1);
+            if changed.work.angle == MilliDegree(0) {
+                changed.work.angle = MilliDegree((TOUCH_DEG * 1e3) as i32);
+            }
+        })
+    };
     Ok([with_sensors(initial)?, with_sensors(rebuilt)?])
 }

@@ -51,7 +51,7 @@ impl<'m> WorkedHitch<'m> {
         if orders.soil != before.soil {
             soil.change_texture(from_m, orders.soil.texture());
         }
-        if orders.soft_patch && !before.soft_patch {
+        if orders.soft_patches > before.soft_patches {
             soil.add_stretch(Stretch::soft_patch(from_m, PATCH_M));
         }
     }
