@@ -95,7 +95,7 @@ def soft_patch(page: Page, depth_cm: float) -> None:
 
 
 def sand(page: Page) -> None:
-    """Another soil comes from the front and is named; with the same draft, the plough works deeper in it."""
+    """Another soil comes from the front and is named."""
     page.select_option("#field-soil", "coarse")
     expect(page.locator("#field-view text").filter(has_text="sand")).to_be_attached()
     expect(page.locator("#field-view .coarse").first).to_be_attached()

@@ -5,7 +5,7 @@ import { jointsAt, place, shape } from "./linkage.js";
 
 /** @typedef {[number, number]} Point x to the rear of the rear axle, y above the ground, m */
 
-/** Drawn part, m: left, right, lowest, highest. */
+/** Part that every window shows, m: left, right, lowest, highest. Wide windows show more ground on both sides. */
 const LEFT = -3.6, RIGHT = 4.6, LOW = -0.75, HIGH = 2.75;
 
 /** Joints of the linkage: lift arm end D, rod joint E, pivot F, hitch point G. */
@@ -86,7 +86,7 @@ export function drawField(svg, of, linkage) {
     const [x, y] = joints[G];
     plough.setAttribute("d", ploughPath([x, y + rear_m - tilt * x], of, tip));
     track.push([now.distance_m - of.share_m, Math.min(tip, height(of.share_m))]);
-    track = track.filter(([at_m]) => at_m > now.distance_m - RIGHT - 1);
+    track = track.filter(([at_m]) => at_m > now.distance_m + ground.from_m);
     const floor = track.map(([at_m, y]) => /** @type {Point} */ ([now.distance_m - at_m, y])).filter(([x]) => x >= of.share_m);
     const above = [...floor].reverse().map(([x]) => /** @type {Point} */ ([x, height(x)]));
     worked.setAttribute("d", floor.length > 1 ? `${path([...floor, ...above])}Z` : "");
