@@ -104,6 +104,8 @@ mod tests {
             "loop-oil",
             "loop-sensor",
             "loop-chart",
+            "field-on",
+            "field-view",
             "message",
         ] {
             assert!(made.contains(&format!("id=\"{id}\"")), "{id}");

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::words;
 
 /// Drawn ground behind and in front of the rear axle, m: wide windows show more of it than narrow ones.
-const DRAWN_M: [f64; 2] = [-9.0, 9.0];
+const DRAWN_M: [f64; 2] = [-11.0, 10.0];
 /// Distance of its points, m.
 const POINT_M: f64 = 0.125;
 
