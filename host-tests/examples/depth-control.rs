@@ -2,12 +2,12 @@
 //! the dead band, the low-pass and the depth per degree of the depth loop:
 //! `cargo run -p host-tests --example depth-control -- 4 300 1500 14000 3200 9000`.
 
+use hitch_closed_loop::field::{LINK_DEPTH_M, Settings};
 use hitch_field::draft::Texture;
 use hitch_field::soil::SoilPlan;
 use hitch_quantities::Function;
 use hitch_quantities::units::Count;
-use hitch_workbench::field_loop::pass::{DEPTH_M, DRAFT_N, LINK_DEPTH_M, Pass, fitted_with};
-use hitch_workbench::field_loop::rig::Settings;
+use hitch_workbench::field_loop::pass::{DEPTH_M, DRAFT_N, Pass, fitted_with};
 use hitch_workbench::field_loop::undulation::{DepthFigures, drive};
 
 fn main() {

@@ -119,7 +119,7 @@ const CRATES: [Layers; 12] = [
         order: &[
             &["valve_survey"],
             &["closed_loop"],
-            &["calibrate"],
+            &["calibrate", "field"],
             &["driven"],
         ],
     },

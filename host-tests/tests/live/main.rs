@@ -15,6 +15,7 @@ mod ecu_process;
 mod ecu_tools;
 mod emulated;
 mod emulated_ecu;
+mod field_in_browser;
 mod files_in_browser;
 mod fixed_parameter;
 mod instrument_in_browser;

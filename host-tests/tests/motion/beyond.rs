@@ -1,6 +1,6 @@
 //! Motion that a fault costs: beyond what the same hitch does on the same soil without the fault.
 
-use hitch_workbench::field_loop::rig::FieldSample;
+use hitch_closed_loop::field::FieldSample;
 
 /// What a fault moves, degrees.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,13 +1,13 @@
 //! Depth control by an external sensor: the controller with hitch, tractor and field.
 
+use hitch_closed_loop::field::{FieldRig, FieldSample, LINK_DEPTH_M, RAISED_DEG, Settings};
 use hitch_field::draft::Texture;
 use hitch_field::soil::SoilPlan;
 use hitch_field::terrain::Terrain;
 use hitch_field::tractor::TractorConstants;
 use hitch_quantities::units::{Count, PerMille, SupplyShare};
 use hitch_quantities::{Function, Inputs, Reason, Trouble, ValidCalibration};
-use hitch_workbench::field_loop::pass::{DEPTH_M, DRAFT_N, LINK_DEPTH_M, SPEED_M_S, fitted_with};
-use hitch_workbench::field_loop::rig::{FieldRig, FieldSample, RAISED_DEG, Settings};
+use hitch_workbench::field_loop::pass::{DEPTH_M, DRAFT_N, SPEED_M_S, fitted_with};
 use hitch_workbench::field_loop::undulation::{self, DepthFigures};
 use host_tests::seeds::cases;
 

@@ -1,5 +1,6 @@
 //! Draft, mix, depth limit and slip guard: the controller with hitch, tractor and field.
 
+use hitch_closed_loop::field::{FieldSample, LINK_DEPTH_M, Settings};
 use hitch_controller::Controller;
 use hitch_field::draft::Texture;
 use hitch_field::soil::{SoilPlan, Stretch};
@@ -9,10 +10,7 @@ use hitch_quantities::units::{
     Count, Micrometre, MillimetrePerSecond, Newton, PerMille, SupplyShare,
 };
 use hitch_quantities::{Calibration, Function, Inputs, Reason, Trouble, ValidCalibration};
-use hitch_workbench::field_loop::pass::{
-    Comparison, DRAFT_N, LINK_DEPTH_M, Pass, fitted, fitted_with,
-};
-use hitch_workbench::field_loop::rig::{FieldSample, Settings};
+use hitch_workbench::field_loop::pass::{Comparison, DRAFT_N, Pass, fitted, fitted_with};
 use host_tests::seeds::cases;
 use host_tests::trace;
 

@@ -1,5 +1,6 @@
 //! Quick engagement: the controller with hitch, tractor and field.
 
+use hitch_closed_loop::field::{FieldRig, FieldSample, LINK_DEPTH_M, RAISED_DEG, Settings};
 use hitch_controller::Controller;
 use hitch_field::draft::Texture;
 use hitch_field::soil::SoilPlan;
@@ -7,8 +8,7 @@ use hitch_field::terrain::Terrain;
 use hitch_field::tractor::TractorConstants;
 use hitch_quantities::units::{MilliDegree, PerMille, SupplyShare};
 use hitch_quantities::{Function, Inputs, Reason, State, Trouble};
-use hitch_workbench::field_loop::pass::{DRAFT_N, LINK_DEPTH_M, SPEED_M_S, fitted};
-use hitch_workbench::field_loop::rig::{FieldRig, FieldSample, RAISED_DEG, Settings};
+use hitch_workbench::field_loop::pass::{DRAFT_N, SPEED_M_S, fitted};
 use host_tests::seeds::cases;
 use host_tests::trace;
 

@@ -1,13 +1,15 @@
 //! In work, and the time until then: the controller with hitch, tractor and field.
 
+use hitch_closed_loop::field::{
+    FieldRig, FieldSample, LINK_DEPTH_M, RAISED_DEG, Settings, TOUCH_DEG,
+};
 use hitch_field::draft::Texture;
 use hitch_field::soil::SoilPlan;
 use hitch_field::terrain::Terrain;
 use hitch_field::tractor::TractorConstants;
 use hitch_quantities::units::{MilliDegree, PerMille};
 use hitch_quantities::{Calibration, Function, State, ValidCalibration};
-use hitch_workbench::field_loop::pass::{DRAFT_N, LINK_DEPTH_M, SPEED_M_S, fitted_with};
-use hitch_workbench::field_loop::rig::{FieldRig, FieldSample, RAISED_DEG, Settings, TOUCH_DEG};
+use hitch_workbench::field_loop::pass::{DRAFT_N, SPEED_M_S, fitted_with};
 use host_tests::seeds::cases;
 
 /// The threshold is where the share touches the ground.

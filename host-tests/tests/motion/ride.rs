@@ -1,9 +1,9 @@
 //! Ride damping on a tractor's body, on roads of ISO 8608, with 600 kg on the hitch.
 
+use hitch_closed_loop::field::RAISED_DEG;
 use hitch_field::body::BodyConstants;
 use hitch_quantities::units::MilliBar;
 use hitch_quantities::{Inputs, Reason};
-use hitch_workbench::field_loop::rig::RAISED_DEG;
 use hitch_workbench::field_loop::transport::{
     Ride, RideComparison, RideSample, TransportRig, class_c, damping_with,
 };

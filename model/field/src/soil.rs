@@ -130,6 +130,18 @@ impl Soil {
         Self { plan, strength }
     }
 
+    /// Gives the field another texture from a distance on, m.
+    pub fn change_texture(&mut self, from_m: f64, texture: Texture) {
+        let changes = &mut self.plan.texture_changes;
+        changes.retain(|(known_m, _)| *known_m < from_m);
+        changes.push((from_m, texture));
+    }
+
+    /// Adds a stretch that differs.
+    pub fn add_stretch(&mut self, stretch: Stretch) {
+        self.plan.stretches.push(stretch);
+    }
+
     /// Texture at a distance, m.
     #[must_use]
     pub fn texture(&self, distance_m: f64) -> Texture {
@@ -162,6 +174,12 @@ impl Soil {
             * stretches
                 .map(|stretch| stretch.cone_factor)
                 .product::<f64>()
+    }
+
+    /// Whether the cone index at a distance, m, is below that of the field.
+    #[must_use]
+    pub fn is_soft(&self, distance_m: f64) -> bool {
+        self.cone_index_kpa(distance_m) < self.plan.cone_index_kpa
     }
 
     /// Whether a distance, m, is in a headland.

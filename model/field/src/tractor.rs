@@ -188,6 +188,29 @@ impl Tractor {
         }
     }
 
+    /// Constants of tractor, implement and sensors.
+    #[must_use]
+    pub const fn constants(&self) -> &TractorConstants {
+        &self.constants
+    }
+
+    /// The soil.
+    #[must_use]
+    pub const fn soil(&self) -> &Soil {
+        &self.soil
+    }
+
+    /// The soil, to change what is ahead.
+    pub const fn soil_mut(&mut self) -> &mut Soil {
+        &mut self.soil
+    }
+
+    /// Heights of the ground.
+    #[must_use]
+    pub const fn terrain(&self) -> &Terrain {
+        &self.terrain
+    }
+
     /// Goes on by `dt_s`, s, limited to 1 µs and 0.1 s. Steps of 1 to 10 ms agree. Demands that are not numbers count as 0.
     pub fn step(&mut self, demand: Demand, dt_s: f64) -> Outputs {
         let link_depth_m = limited(demand.link_depth_m, -2.0, 1.0);

@@ -1,6 +1,6 @@
 //! Figures of a stretch of a pass.
 
-use super::rig::FieldSample;
+use hitch_closed_loop::field::FieldSample;
 
 /// Corner frequency of a low-pass, Hz. The draft is judged with and without it; the loop gets the filtered draft.
 const JUDGED_HZ: f64 = 3.2;

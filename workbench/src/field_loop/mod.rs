@@ -1,17 +1,8 @@
-//! Hitch, controller, tractor and field in one loop.
-//!
-//! ```text
-//! lever, settings -> controller -> coils -> hitch -> height of the lower links -> depth -> tractor on the field
-//!                        ^                    ^                                                 |
-//!                        +--- pins, speeds ---|-------------------------------------------------+
-//!                                             +---------------- forces of the soil ------------+
-//! ```
+//! Passes of the tractor over fields and roads, with the hitch and its controller: `hitch_closed_loop::field`.
 
-pub mod coupling;
 pub mod field_figure;
 pub mod figures;
 pub mod pass;
-pub mod rig;
 pub mod scenario;
 pub mod show;
 pub mod transport;

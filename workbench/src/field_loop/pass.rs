@@ -13,12 +13,10 @@ use hitch_quantities::{Calibration, Function, Inputs, ValidCalibration};
 use rayon::prelude::*;
 
 use super::figures::Figures;
-use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings};
+use hitch_closed_loop::field::{FieldRig, FieldSample, LINK_DEPTH_M, RAISED_DEG, Settings};
 
 /// Ground speed of the work, m/s.
 pub const SPEED_M_S: f64 = 1.8;
-/// Depth of the links, m, with which a plough works at 25 cm in loam: the body sinks by the rest (docs/field.md).
-pub const LINK_DEPTH_M: f64 = 0.228;
 /// Time of driving with the implement raised, s.
 pub const RAISED_S: f64 = 10.0;
 /// Time after the lever was lowered until the hitch works at its depth, s.

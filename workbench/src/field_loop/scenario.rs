@@ -9,22 +9,21 @@ use hitch_field::soil::{SoilPlan, Stretch};
 use hitch_field::terrain::Terrain;
 use hitch_field::tractor::{Outputs as Field, TractorConstants};
 use hitch_plant::Model;
-use hitch_quantities::units::{Count, PerMille};
+use hitch_quantities::units::Count;
 use hitch_quantities::{Function, ValidCalibration};
 
-use super::coupling::Coupling;
 use super::field_figure::FieldFigure;
 use super::figures::Spread;
-use super::pass::{Comparison, DEPTH_M, DRAFT_N, LINK_DEPTH_M, Pass, SPEED_M_S};
-use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings, TOUCH_DEG};
+use super::pass::{Comparison, DEPTH_M, DRAFT_N, Pass, SPEED_M_S};
 use super::transport::{Ride, RideComparison, class_c};
 use super::undulation::{self, DepthFigures};
 use hitch_closed_loop::Sample;
+use hitch_closed_loop::field::{
+    Coupling, FieldRig, FieldSample, LINK_DEPTH_M, RAISED_DEG, Settings, check_reach, fitted,
+};
 
 /// Number of seeds of soil and noise over which figures are means.
 const SEEDS: u64 = 4;
-/// Deepest links that a scenario asks for, m.
-const DEEPEST_M: f64 = 0.30;
 
 /// A scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -75,15 +74,8 @@ pub fn drive(
     calibration: &ValidCalibration,
     first_seed: u64,
 ) -> Result<FieldRun, String> {
-    let coupling = Coupling::new(model, TOUCH_DEG, 0.0);
-    if !coupling.reaches(DEEPEST_M) || !coupling.reaches(coupling.depth_m(RAISED_DEG)) {
-        return Err(format!(
-            "scenarios of the field need links that reach from {RAISED_DEG} degrees to {:.0} cm below the height at \
-             {TOUCH_DEG} degrees; this model's do not",
-            DEEPEST_M * 100.0
-        ));
-    }
-    let calibration = &fitted(calibration)?;
+    check_reach(model).map_err(|error| error.to_string())?;
+    let calibration = &fitted(calibration, |_| {}).map_err(|error| error.to_string())?;
     Ok(match scenario {
         FieldScenario::Draft => draft(model, calibration, first_seed),
         FieldScenario::Mix => mix(model, calibration, first_seed),
@@ -92,18 +84,6 @@ pub fn drive(
         FieldScenario::Transport => transport(model, calibration, first_seed),
         FieldScenario::Headland => headland(model, calibration, first_seed),
     })
-}
-
-/// The calibration with pins, slip guard and ride damping.
-fn fitted(calibration: &ValidCalibration) -> Result<ValidCalibration, String> {
-    let mut fitted = (**calibration).clone();
-    fitted.draft.fitted = Count(1);
-    fitted.ride.fitted = Count(1);
-    if fitted.slip.highest_limit == PerMille(0) {
-        fitted.slip.highest_limit = PerMille(300);
-    }
-    let sealed = fitted.seal();
-    sealed.map_err(|error| format!("the calibration is invalid with all functions on: {error:?}"))
 }
 
 fn settings(function: Function) -> Settings {

@@ -20,7 +20,7 @@ use hitch_quantities::units::{Count, MillimetrePerSecond};
 use hitch_quantities::{Calibration, Inputs, ValidCalibration};
 use rayon::prelude::*;
 
-use super::rig::RAISED_DEG;
+use hitch_closed_loop::field::RAISED_DEG;
 use std::fmt::{self, Display, Formatter};
 use std::ops::RangeInclusive;
 

@@ -8,8 +8,7 @@ use hitch_plant::Model;
 use hitch_quantities::{Inputs, ValidCalibration};
 
 use super::figures::{Spread, activations};
-use super::pass::LINK_DEPTH_M;
-use super::rig::{FieldRig, FieldSample, RAISED_DEG, Settings};
+use hitch_closed_loop::field::{FieldRig, FieldSample, LINK_DEPTH_M, RAISED_DEG, Settings};
 
 /// Ground speed, m/s.
 const SPEED_M_S: f64 = 2.7;

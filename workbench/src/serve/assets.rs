@@ -72,6 +72,16 @@ const FILES: &[(&str, &str, &str)] = &[
         SCRIPT,
         include_str!("assets/loop_orders.js"),
     ),
+    (
+        "field_orders.js",
+        SCRIPT,
+        include_str!("assets/field_orders.js"),
+    ),
+    (
+        "field_view.js",
+        SCRIPT,
+        include_str!("assets/field_view.js"),
+    ),
     ("linkage.js", SCRIPT, include_str!("assets/linkage.js")),
     (
         "strip_chart.js",

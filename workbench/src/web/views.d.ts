@@ -157,6 +157,50 @@ interface Described {
   equal: boolean;
   /** Maps of the first and of the rebuilt calibration. */
   maps: [ValveMaps, ValveMaps];
+  /** Tractor and field, if the hitches can work on one. */
+  field: DescribedField | null;
+  /** Why they cannot. */
+  no_field: string | null;
+}
+
+/** Tractor and implement of the work on a field, and the ranges of its controls. */
+interface DescribedField {
+  /** Rocker angle at which the share touches level ground, degree. */
+  touch_deg: number;
+  /** Rocker angle of the raised implement, degree. */
+  raised_deg: number;
+  /** Rocker angle at which it works at its usual depth, degree. */
+  working_deg: number;
+  /** Distance of the axles, m. */
+  wheelbase_m: number;
+  /** Radius of the rear wheels, m. */
+  rear_radius_m: number;
+  /** Middle of the shares behind the rear axle, m. */
+  share_m: number;
+  /** Length of the share line, m. */
+  share_line_m: number;
+  /** Range of ground speeds, m/s. */
+  speeds_m_s: [number, number];
+  /** Range of set points of the draft, N. */
+  drafts_n: [number, number];
+  /** Range of set points of the depth, m. */
+  depths_m: [number, number];
+  /** Range of slip limits, 1. */
+  slip_limits: [number, number];
+}
+
+/** The ground about the tractor, at points of equal distance. */
+interface DrawnGround {
+  /** The first point, in front of the rear axle, m. */
+  from_m: number;
+  /** Distance of the points, m. */
+  step_m: number;
+  /** Heights, m. */
+  height_m: number[];
+  /** Textures: `coarse`, `medium` or `fine`. */
+  texture: string[];
+  /** Whether the ground is a soft patch. */
+  soft: boolean[];
 }
 
 /** The linkage over its swing. */
@@ -255,6 +299,48 @@ interface Fault {
   what: string;
   /** A suggested correction. */
   hint?: string;
+}
+
+/** The present state of tractor and field. */
+interface FieldNow {
+  /** Draft, kN, positive against the direction of travel. */
+  draft_kn: number;
+  /** Force of the soil on the implement upwards, kN. */
+  vertical_kn: number;
+  /** Working depth, m; negative above ground. */
+  depth_m: number;
+  /** Slip of the rear wheels, 0 to 1. */
+  slip: number;
+  /** Ground speed, m/s. */
+  ground_speed_m_s: number;
+  /** Speed of the rear wheels, m/s. */
+  wheel_speed_m_s: number;
+  /** Distance of the rear axle, m. */
+  distance_m: number;
+  /** Rear and front axle above their height on level ground without an implement, m. */
+  axles_m: [number, number];
+  /** What determines the set point, in short; `null`: the lever, or quick lift. */
+  reason: string | null;
+  /** The same in words. */
+  reason_text: string;
+  /** Lost sensor of draft, depth or slip control, in words. */
+  trouble_text: string | null;
+  /** Whether the implement is in work; `null` if the controller does not know. */
+  in_work: boolean | null;
+  /** The ground about the tractor. */
+  ground: DrawnGround;
+}
+
+/** Tractor and field since the last answer. */
+interface FieldView {
+  /** Draft, kN. */
+  draft_kn: number[];
+  /** Working depth, cm; negative above ground. */
+  depth_cm: number[];
+  /** Slip of the rear wheels, percent. */
+  slip_percent: number[];
+  /** The present state; `null` before the first step. */
+  now: FieldNow | null;
 }
 
 /** A figure of both calibrations. */
@@ -356,6 +442,8 @@ interface HitchView {
   trip_text: string | null;
   /** Figures of the last move. */
   move: MoveFigures | null;
+  /** Tractor and field, of a hitch that works on one. */
+  field?: FieldView;
 }
 
 /** Names of the lines of a run. */

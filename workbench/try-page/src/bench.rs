@@ -95,6 +95,9 @@ impl Bench {
             Request::Describe { orders } => view(machine, &checked(orders)?),
             Request::Open { orders } => {
                 let orders = checked(orders)?;
+                if let Some(what) = machine.refusal(&orders) {
+                    return Err(Fault(what));
+                }
                 self.pair = Some(Pair::new(machine, &orders, machine.start_deg(&orders)));
                 view(machine, &orders)
             }

@@ -19,12 +19,14 @@ const OWN: [(&str, &str); 2] = [
     ),
 ];
 /// The scripts of `hitch serve` for its closed loop, in the order of their imports.
-const SHARED: [&str; 9] = [
+const SHARED: [&str; 11] = [
     "dom.js",
     "run_plot.js",
     "refused.js",
     "message.js",
     "linkage.js",
+    "field_orders.js",
+    "field_view.js",
     "loop_orders.js",
     "strip_chart.js",
     "valve_map.js",
@@ -102,6 +104,8 @@ mod tests {
             "loop-oil",
             "loop-sensor",
             "loop-chart",
+            "field-on",
+            "field-view",
             "message",
         ] {
             assert!(made.contains(&format!("id=\"{id}\"")), "{id}");

@@ -1,5 +1,8 @@
 //! What the page needs to draw the closed loop: linkage, ranges and valve maps.
 
+use std::ops::RangeInclusive;
+
+use hitch_field::tractor::TractorConstants;
 use hitch_plant::{LinkageError, Model};
 use hitch_quantities::ValidCalibration;
 use hitch_quantities::calibration::valve_table::ValveTable;
@@ -7,8 +10,10 @@ use hitch_quantities::units::MilliAmp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::field_orders::{DEPTHS_M, DRAFTS_N, SLIP_LIMITS, SPEEDS_M_S};
 use super::machine::Machine;
 use super::orders::{LOADS_KG, LONGEST_MS, OILS_C};
+use crate::field::{Coupling, LINK_DEPTH_M, RAISED_DEG, TOUCH_DEG};
 
 /// Drawn positions of the linkage over its swing; the page interpolates between them with less than 0.2 mm of error.
 const POSITIONS: u32 = 64;
@@ -36,6 +41,37 @@ pub struct Described {
     pub equal: bool,
     /// Maps of the first and of the rebuilt calibration.
     pub maps: [ValveMaps; 2],
+    /// Tractor and field, if the hitches can work on one.
+    pub field: Option<DescribedField>,
+    /// Why they cannot.
+    pub no_field: Option<String>,
+}
+
+/// Tractor and implement of the work on a field, and the ranges of its controls.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct DescribedField {
+    /// Rocker angle at which the share touches level ground, degree.
+    pub touch_deg: f64,
+    /// Rocker angle of the raised implement, degree.
+    pub raised_deg: f64,
+    /// Rocker angle at which it works at its usual depth, degree.
+    pub working_deg: f64,
+    /// Distance of the axles, m.
+    pub wheelbase_m: f64,
+    /// Radius of the rear wheels, m.
+    pub rear_radius_m: f64,
+    /// Middle of the shares behind the rear axle, m.
+    pub share_m: f64,
+    /// Length of the share line, m.
+    pub share_line_m: f64,
+    /// Range of ground speeds, m/s.
+    pub speeds_m_s: [f64; 2],
+    /// Range of set points of the draft, N.
+    pub drafts_n: [f64; 2],
+    /// Range of set points of the depth, m.
+    pub depths_m: [f64; 2],
+    /// Range of slip limits, 1.
+    pub slip_limits: [f64; 2],
 }
 
 /// The linkage over its swing.
@@ -94,6 +130,14 @@ impl Described {
     ) -> Result<Self, LinkageError> {
         let (low_rad, high_rad) = machine.plant.linkage().swing_rad();
         let (initial, rebuilt) = (&machine.initial, &machine.rebuilt);
+        let no_field = if source == "host" {
+            machine.working.as_ref().err().map(ToString::to_string)
+        } else {
+            Some(
+                "the work on a field needs the controller on this computer, without an ECU"
+                    .to_owned(),
+            )
+        };
         Ok(Self {
             source,
             may_write,
@@ -105,7 +149,31 @@ impl Described {
             linkage: linkage(&machine.plant)?,
             equal: initial == rebuilt,
             maps: [initial, rebuilt].map(valve_maps),
+            field: no_field
+                .is_none()
+                .then(|| DescribedField::of(&machine.plant)),
+            no_field,
         })
+    }
+}
+
+impl DescribedField {
+    fn of(plant: &Model) -> Self {
+        let constants = TractorConstants::ploughing();
+        let ends = |range: RangeInclusive<f64>| [*range.start(), *range.end()];
+        Self {
+            touch_deg: TOUCH_DEG,
+            raised_deg: RAISED_DEG,
+            working_deg: Coupling::new(plant, TOUCH_DEG, 0.0).angle_deg(LINK_DEPTH_M),
+            wheelbase_m: constants.body.wheelbase_m,
+            rear_radius_m: 0.5 * constants.rear_tyre.diameter_m,
+            share_m: constants.implement.share_m,
+            share_line_m: constants.implement.length_m,
+            speeds_m_s: ends(SPEEDS_M_S),
+            drafts_n: ends(DRAFTS_N),
+            depths_m: ends(DEPTHS_M),
+            slip_limits: ends(SLIP_LIMITS),
+        }
     }
 }
 

@@ -1,11 +1,13 @@
 //! The models and calibrations of the closed loop.
 
 use hitch_plant::{LinkageError, Model};
+use hitch_quantities::units::{Count, MilliDegree};
 use hitch_quantities::{Calibration, ValidCalibration};
 
 use super::orders::Orders;
 use crate::calibrate::{CalibrateError, calibrate};
 use crate::closed_loop::with_dynamics;
+use crate::field::{NotFitted, OutOfReach, TOUCH_DEG, check_reach, fitted};
 
 /// The plant, and both calibrations.
 #[derive(Debug, Clone)]
@@ -16,9 +18,50 @@ pub struct Machine {
     pub initial: ValidCalibration,
     /// The calibration of the present model.
     pub rebuilt: ValidCalibration,
+    /// Both with the sensors for the work on a field, or why the machine cannot work on it.
+    pub working: Result<[ValidCalibration; 2], NoField>,
+}
+
+/// The calibrations of a hitch.
+#[derive(Debug, Clone, Copy)]
+pub struct Calibrations<'c> {
+    /// Of its model.
+    pub plain: &'c ValidCalibration,
+    /// The same with the sensors for the work on a field, if the machine can work there.
+    pub working: Option<&'c ValidCalibration>,
+}
+
+/// Why a machine cannot work on a field.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoField {
+    /// The links are too short.
+    #[error(transparent)]
+    OutOfReach(#[from] OutOfReach),
+    /// A calibration is not valid with the sensors.
+    #[error(transparent)]
+    NotFitted(#[from] NotFitted),
 }
 
 impl Machine {
+    /// Both calibrations of each hitch: that of the initial, and that of the present model.
+    pub(super) fn calibrations(&self) -> [Calibrations<'_>; 2] {
+        let working = self.working.as_ref().ok();
+        let both = |plain, at: usize| Calibrations {
+            plain,
+            working: working.map(|working| &working[at]),
+        };
+        [both(&self.initial, 0), both(&self.rebuilt, 1)]
+    }
+
+    /// Why the machine cannot follow orders; `None` if it can.
+    #[must_use]
+    pub fn refusal(&self, orders: &Orders) -> Option<String> {
+        let reason = self.working.as_ref().err();
+        reason
+            .filter(|_| orders.field.is_some())
+            .map(ToString::to_string)
+    }
+
     /// The angle of the lever, within the travel of the hitch, degree.
     #[must_use]
     pub fn start_deg(&self, orders: &Orders) -> f64 {
@@ -83,10 +126,31 @@ impl Models {
     /// # Errors
     /// If a model cannot be converted.
     pub fn machine(&self) -> Result<Machine, MachineError> {
+        let (plant, initial) = (with_dynamics(&self.present)?, calibration(&self.initial)?);
+        let rebuilt = self.rebuilt()?;
+        let working = working(&plant, [&initial, &rebuilt]);
         Ok(Machine {
-            plant: with_dynamics(&self.present)?,
-            initial: calibration(&self.initial)?,
-            rebuilt: self.rebuilt()?,
+            plant,
+            initial,
+            rebuilt,
+            working,
         })
     }
+}
+
+/// Calibrations with all sensors of the field.
+fn working(
+    plant: &Model,
+    [initial, rebuilt]: [&ValidCalibration; 2],
+) -> Result<[ValidCalibration; 2], NoField> {
+    check_reach(plant)?;
+    let with_sensors = |calibration| {
+        fitted(calibration, |changed| {
+            changed.depth.fitted = Count(1);
+            if changed.work.angle == MilliDegree(0) {
+                changed.work.angle = MilliDegree((TOUCH_DEG * 1e3) as i32);
+            }
+        })
+    };
+    Ok([with_sensors(initial)?, with_sensors(rebuilt)?])
 }

@@ -4,6 +4,7 @@ use hitch_quantities::Inputs;
 use hitch_quantities::units::MilliDegreePerSecond;
 use serde::Deserialize;
 
+use super::field_orders::FieldOrders;
 use super::sensor_fault::{Kind, SensorFault};
 
 /// Largest advance of a request, ms.
@@ -55,6 +56,9 @@ pub struct Orders {
     pub oil_temperature_c: f64,
     /// The broken sensor.
     pub fault: Option<SensorFault>,
+    /// Field and function, of a hitch that works on one.
+    #[serde(default)]
+    pub field: Option<FieldOrders>,
 }
 
 impl Orders {
@@ -64,14 +68,16 @@ impl Orders {
             Some(Kind::Offset(by)) => by,
             _ => 0.0,
         };
-        let values = [
+        let own = [
             ("lever_deg", self.lever_deg, LEVERS_DEG),
             ("load_kg", self.load_kg, LOADS_KG),
             ("oil_temperature_c", self.oil_temperature_c, OILS_C),
             ("offset", offset, OFFSETS),
         ];
-        let mut outside = values
+        let of_field = self.field.iter().flat_map(FieldOrders::ranged);
+        let mut outside = own
             .into_iter()
+            .chain(of_field)
             .filter(|(_, value, range)| !range.contains(value));
         let (name, value, range) = outside.next()?;
         let (low, high) = (range.start(), range.end());

@@ -12,11 +12,8 @@ impl<'m> Pair<'m> {
     /// Both at rest at an angle, degree.
     #[must_use]
     pub fn new(machine: &'m Machine, orders: &Orders, angle_deg: f64) -> Self {
-        let calibrations = [&machine.initial, &machine.rebuilt];
-        Self(
-            calibrations
-                .map(|calibration| Hitch::new(&machine.plant, calibration, orders, angle_deg)),
-        )
+        let calibrations = machine.calibrations();
+        Self(calibrations.map(|both| Hitch::new(&machine.plant, both, orders, angle_deg)))
     }
 
     /// Advances both by `steps` milliseconds; returns the samples and the state at the end of each.

@@ -5,6 +5,7 @@ use hitch_quantities::units::MilliAmp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::field_view::FieldView;
 use super::figures::{MoveFigures, Moves};
 use super::words;
 use crate::closed_loop::Sample;
@@ -42,6 +43,9 @@ pub struct HitchView {
     /// Figures of the last move.
     #[serde(rename = "move")]
     pub last_move: Option<MoveFigures>,
+    /// Tractor and field, of a hitch that works on one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field: Option<FieldView>,
 }
 
 /// The state of a hitch, and its moves.
@@ -52,11 +56,15 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// Includes a sample; whether it belongs into the strip charts.
-    pub fn follow(&mut self, sample: &Sample) -> bool {
+    /// Whether a sample belongs into the strip charts.
+    pub fn shows(sample: &Sample) -> bool {
+        ((sample.time_s * 1e3).round() as u64).is_multiple_of(SAMPLE_MS)
+    }
+
+    /// Includes a sample.
+    pub fn follow(&mut self, sample: &Sample) {
         self.moves.follow(sample);
         self.outputs = sample.outputs;
-        ((sample.time_s * 1e3).round() as u64).is_multiple_of(SAMPLE_MS)
     }
 
     /// Samples and the present state.
@@ -82,6 +90,7 @@ impl Strip {
             fault_text: outputs.fault.map(|fault| words::fault(fault).to_owned()),
             trip_text: outputs.trip.map(words::trip),
             last_move: self.moves.last(),
+            field: None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! States and faults of the controller in words.
 
-use hitch_quantities::{Fault, State, Trip};
+use hitch_quantities::{Fault, Reason, State, Trip, Trouble};
 
 /// A state, and what the operator can do in it.
 pub const fn state(state: State) -> &'static str {
@@ -63,5 +63,38 @@ pub const fn trip(trip: Trip) -> &'static str {
         Trip::BeyondLimit => "current beyond a limit of the travel",
         Trip::NoConsent => "current on a set point without consent",
         Trip::Ride => "current of ride damping that must not be",
+    }
+}
+
+/// What determines the set point.
+pub const fn reason(reason: Option<Reason>) -> &'static str {
+    match reason {
+        None => "the lever",
+        Some(Reason::Draft) => "the draft",
+        Some(Reason::Mix) => "draft and position, weighted by the mix dial",
+        Some(Reason::DepthLimit) => "the draft, above the lever",
+        Some(Reason::Floor) => "the lever, which is the lowest position and is reached",
+        Some(Reason::Ceiling) => "the upper limit, which is reached",
+        Some(Reason::Slip) => "the slip, which is above its limit",
+        Some(Reason::AboveGround) => "the lever, until the implement works in the ground",
+        Some(Reason::Holds) => "the present depth, held until the lever takes over",
+        Some(Reason::Ride) => "ride damping about the lever",
+        Some(Reason::Engages) => "quick engagement, which lowers into the soil",
+        Some(Reason::Depth) => "the depth sensor",
+    }
+}
+
+/// A lost sensor of draft, depth or slip control.
+pub const fn trouble(trouble: Trouble) -> &'static str {
+    match trouble {
+        Trouble::PinRange => "a draft pin is missing or out of its range",
+        Trouble::PinsDisagree => "the draft pins disagree",
+        Trouble::PinFrozen => "a draft pin is frozen",
+        Trouble::GroundSpeed => "the ground speed is missing",
+        Trouble::WheelSpeed => "the wheel speed is missing",
+        Trouble::SpeedFrozen => "a speed is frozen while the other one changes",
+        Trouble::DepthRange => "the depth sensor is missing or out of its range",
+        Trouble::DepthFrozen => "the depth sensor is frozen",
+        Trouble::DepthNoisy => "the depth sensor is too noisy",
     }
 }

@@ -1,10 +1,12 @@
 // @ts-check
 /** The closed loop in real time: requests steps of the simulation, and shows both hitches; or shows the ECU on the bus. */
 import { byId, element } from "./dom.js";
+import { field, limitField } from "./field_orders.js";
+import { drawField, signed as signedForce, tellField } from "./field_view.js";
 import { drawLinkage } from "./linkage.js";
 import { connectOrders, limitLever, orders } from "./loop_orders.js";
 import { Refused } from "./refused.js";
-import { addSamples, clearChart, drawChart, showOnly } from "./strip_chart.js";
+import { addSamples, clearChart, drawChart, showField, showOnly } from "./strip_chart.js";
 import { drawMaps } from "./valve_map.js";
 
 /** Time between two requests, ms. */
@@ -29,6 +31,8 @@ let model = "";
 let machine = null;
 /** @type {ReturnType<typeof drawLinkage> | null} */
 let move = null;
+/** @type {import("./field_view.js").FieldDrawing | null} */
+let moveField = null;
 /** Whether the closed loop has been started: a description alone starts nothing. */
 let opened = false;
 let running = false;
@@ -51,7 +55,7 @@ let generation = 0;
 export function connectLoop(show, of) {
   say = show;
   transport = of;
-  connectOrders();
+  connectOrders(reopen);
   byId("loop-start").addEventListener("click", () => (running ? stop() : start()));
   byId("loop-restart").addEventListener("click", () => reopen());
   byId("loop-write").addEventListener("click", write);
@@ -112,6 +116,10 @@ async function reopen() {
     return;
   }
   limitLever(machine.swing_deg);
+  limitField(machine);
+  const of = field();
+  moveField = of && drawField(/** @type {any} */ (byId("field-view")), of, machine.linkage);
+  showField(of !== null);
   move = drawLinkage(/** @type {any} */ (byId("linkage")), machine.linkage);
   move(machine.angle_deg, machine.angle_deg, machine.angle_deg, orders().load_kg);
   byId("loop").dataset.source = machine.source;
@@ -195,7 +203,7 @@ async function step(milliseconds) {
   try {
     const answer = await transport.post("loop/step", { orders: given, milliseconds });
     if (own !== generation) return;
-    show(answer, given);
+    show(answer, given, milliseconds);
     const pace = milliseconds / (performance.now() - began);
     if (!isBus()) byId("loop-pace").textContent = isEcu() ? (answer.behind ? "behind real time: this computer is too slow or busy" : "") : pace < SLOW ? `slower than real time: ${pace.toFixed(2)}` : "";
   } catch (error) {
@@ -209,14 +217,20 @@ async function step(milliseconds) {
 
 /** Shows an answer.
  * @param {LoopAnswer} answer
- * @param {any} given */
-function show(answer, given) {
+ * @param {any} given
+ * @param {number} milliseconds */
+function show(answer, given, milliseconds) {
   // An ECU has the place of the rebuilt calibration; what belongs to the first one is hidden.
   const isSingle = answer.loops.length === 1;
   const loops = isSingle ? [answer.loops[0], answer.loops[0]] : answer.loops;
-  addSamples(loops, given.lever_deg);
+  addSamples(loops, given);
   const [first, second] = loops.map((loop) => loop.angle_deg[loop.angle_deg.length - 1] ?? null);
-  if (first !== null && second !== null && move) move(given.lever_deg, first, second, given.load_kg);
+  if (first !== null && second !== null && move) move(given.lever_deg, first, second, given.field ? 0 : given.load_kg);
+  const now = loops[1].field?.now;
+  if (now && second !== null && moveField) {
+    moveField(now, second, milliseconds * 1e-3);
+    tellField(now);
+  }
   showFigures(loops, given.lever_deg);
   if (answer.bus) showBus(answer.bus);
   loops.forEach((loop, index) => { if (index === 1 || !isSingle) report(loop, index); });
@@ -251,6 +265,13 @@ function showFigures(loops, lever_deg) {
     set("arrived", figures && figures.arrived_s !== null ? `${figures.arrived_s.toFixed(2)} s` : "–");
     set("error", !figures ? "–" : figures.error_deg === null ? "moving" : signed(figures.error_deg));
     byId(`loop-state-${index}`).toggleAttribute("data-fault", Boolean(loop.fault));
+    const now = loop.field?.now;
+    if (!now) return;
+    set("reason", now.reason_text);
+    set("draft", `${now.draft_kn.toFixed(1)} kN`);
+    set("vertical", `${signedForce(now.vertical_kn)} kN`);
+    set("depth", now.depth_m > 0 ? `${(now.depth_m * 100).toFixed(1)} cm` : "above ground");
+    set("slip", `${(now.slip * 100).toFixed(1)} %`);
   });
   const text = `${lever_deg.toFixed(1)} deg`;
   if (byId("loop-set-point").textContent !== text) byId("loop-set-point").textContent = text;

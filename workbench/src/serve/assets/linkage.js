@@ -25,9 +25,10 @@ const PISTON_M = 0.03;
 /** Load, kg, of a drawn weight of a metre's edge. */
 const HEAVY_KG = 12_000;
 
-/** @param {string} name
+/** An element of a drawing.
+ * @param {string} name
  * @param {Record<string, string | number>} attributes */
-function shape(name, attributes) {
+export function shape(name, attributes) {
   const made = document.createElementNS(NAMESPACE, name);
   for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
   return made;
@@ -111,10 +112,11 @@ function mechanism(name) {
   };
 }
 
-/** @param {SVGElement} line
+/** Moves the ends of a line.
+ * @param {SVGElement} line
  * @param {Point} from
  * @param {Point} to */
-function place(line, from, to) {
+export function place(line, from, to) {
   line.setAttribute("x1", String(from[0]));
   line.setAttribute("y1", String(-from[1]));
   line.setAttribute("x2", String(to[0]));

@@ -1,6 +1,7 @@
 // @ts-check
 /** Controls of the closed loop: what both hitches are given. */
 import { byId, element } from "./dom.js";
+import { connectField, fieldOrders } from "./field_orders.js";
 
 /** Offsets that a sensor gets first: unit and value. */
 const OFFSETS = /** @type {Record<string, [string, number]>} */ ({ angle: ["deg", 5], lever: ["deg", 5],
@@ -29,6 +30,7 @@ export function orders() {
     hold: byId("loop-stop").getAttribute("aria-pressed") === "true", quick_lift: performance.now() < pressedUntil,
     load_kg: Number(input("loop-load").value), oil_temperature_c: Number(input("loop-oil").value),
     fault: kind === "none" ? null : { sensor, kind: kind === "offset" ? { offset: Number.isFinite(offset) ? offset : 0 } : kind },
+    field: fieldOrders(),
   };
 }
 
@@ -77,8 +79,17 @@ function holdable(button, hold) {
   window.addEventListener("blur", () => set(false));
 }
 
-/** Connects the controls. */
-export function connectOrders() {
+/** Moves the lever.
+ * @param {number} angle_deg */
+function moveLever(angle_deg) {
+  input("loop-lever").value = angle_deg.toFixed(1);
+  showSliders();
+}
+
+/** Connects the controls.
+ * @param {() => void} restart starts the loop again */
+export function connectOrders(restart) {
+  connectField(restart, moveLever, holdable);
   for (const id of ["loop-lever", "loop-load", "loop-oil"]) input(id).addEventListener("input", showSliders);
   holdable(byId("loop-raise"), (down) => { held = down ? "raise" : null; });
   holdable(byId("loop-lower"), (down) => { held = down ? "lower" : null; });

@@ -9,10 +9,22 @@ export const SHOWN_S = 25;
 /** Time between two drawings, ms. */
 const DRAW_MS = 200;
 
-/** Rows: key of the samples, title, unit, height in px. */
-const ROWS = /** @type {["angle_deg" | "lift_a" | "lower_a" | "cylinder_bar" | "pump_bar", string, string, number][]} */ ([["angle_deg", "rocker angle and set point", "deg", 150],
+/** A row: key of the samples, title, unit, height in px.
+ * @typedef {[string, string, string, number]} Row */
+
+/** Rows of the hitch.
+ * @type {Row[]} */
+const HITCH_ROWS = [["angle_deg", "rocker angle and set point", "deg", 150],
   ["lift_a", "lift current", "A", 70], ["lower_a", "lowering current", "A", 70],
-  ["cylinder_bar", "cylinder pressure", "bar", 70], ["pump_bar", "pump pressure", "bar", 70]]);
+  ["cylinder_bar", "cylinder pressure", "bar", 70], ["pump_bar", "pump pressure", "bar", 70]];
+
+/** Rows of the field, behind that of the angle.
+ * @type {Row[]} */
+const FIELD_ROWS = [["draft_kn", "draft and set point", "kN", 110], ["depth_cm", "working depth", "cm", 90],
+  ["slip_percent", "slip and limit", "%", 70]];
+
+/** @type {Row[]} */
+let rows = HITCH_ROWS;
 
 /** Fixed heights, px. */
 const GAP = 24, BOTTOM = 42, LEGEND_LINE = 24;
@@ -21,7 +33,8 @@ const GAP = 24, BOTTOM = 42, LEGEND_LINE = 24;
 const HITCHES = [{ name: "first calibration", colour: "first", dash: "dash", width: 1.8 },
   { name: "rebuilt calibration", colour: "simulated", dash: "solid", width: 1.8 }];
 
-/** @type {{time: number[], set_point: number[], sensor: (number | null)[], loops: Record<string, (number | null)[]>[]}} */
+/** Samples: of the set points by row, of the hitches by row.
+ * @type {{time: number[], sensor: (number | null)[], wanted: Record<string, (number | null)[]>, loops: Record<string, (number | null)[]>[]}} */
 let history = empty();
 /** Name of the only hitch; `null` if there are two.
  * @type {string | null} */
@@ -32,8 +45,18 @@ let drawn = 0;
 let drawing = false;
 
 function empty() {
-  const loop = () => Object.fromEntries(ROWS.map(([key]) => [key, /** @type {(number | null)[]} */ ([])]));
-  return { time: [], set_point: [], sensor: [], loops: [loop(), loop()] };
+  const all = () => Object.fromEntries(rows.map(([key]) => [key, /** @type {(number | null)[]} */ ([])]));
+  return { time: [], sensor: [], wanted: all(), loops: [all(), all()] };
+}
+
+/** Shows the rows of the field, or leaves them out.
+ * @param {boolean} isShown */
+export function showField(isShown) {
+  const [angle, ...others] = HITCH_ROWS;
+  rows = isShown ? [angle, ...FIELD_ROWS, ...others] : HITCH_ROWS;
+  byId("loop-chart").setAttribute("aria-label",
+    `Angle, ${isShown ? "draft, depth, slip, " : ""}coil currents and pressures of both hitches over the last ${SHOWN_S} seconds`);
+  clearChart();
 }
 
 /** Discards all samples. */
@@ -50,22 +73,33 @@ export function showOnly(name, isMeasured) {
   measured = isMeasured;
 }
 
+/** The set points of the rows that have one.
+ * @param {any} given
+ * @returns {Record<string, number | null>} */
+function setPoints({ lever_deg, field }) {
+  if (!field) return { angle_deg: lever_deg };
+  const byDraft = ["draft", "mix", "depth-limit"].includes(field.function);
+  return { angle_deg: lever_deg, draft_kn: byDraft ? field.draft_n * 1e-3 : null,
+    depth_cm: field.function === "depth" ? field.depth_m * 100 : null, slip_percent: field.slip_limit * 100 };
+}
+
 /** Adds the samples of an answer.
  * @param {HitchView[]} loops
- * @param {number} set_point_deg */
-export function addSamples(loops, set_point_deg) {
+ * @param {any} given the orders */
+export function addSamples(loops, given) {
   const times = loops[0].time_s;
+  const wanted = setPoints(given);
   history.time.push(...times);
-  history.set_point.push(...times.map(() => set_point_deg));
   history.sensor.push(...loops[1].shown_deg);
-  loops.forEach((loop, index) => ROWS.forEach(([key]) => history.loops[index][key].push(...loop[key])));
+  for (const [key] of rows) {
+    history.wanted[key].push(...times.map(() => wanted[key] ?? null));
+    loops.forEach((loop, index) => history.loops[index][key].push(.../** @type {any} */ ({ ...loop, ...loop.field })[key]));
+  }
   const oldest = history.time[history.time.length - 1] - SHOWN_S;
   const from = history.time.findIndex((time) => time >= oldest);
   if (from <= 0) return;
-  history.time.splice(0, from);
-  history.set_point.splice(0, from);
-  history.sensor.splice(0, from);
-  history.loops.forEach((loop) => ROWS.forEach(([key]) => loop[key].splice(0, from)));
+  const ofRows = [history.wanted, ...history.loops].flatMap((one) => Object.values(one));
+  for (const samples of [history.time, history.sensor, ...ofRows]) samples.splice(0, from);
 }
 
 /** Draws the charts, unless they have just been drawn.
@@ -86,7 +120,7 @@ export async function drawChart(now = false) {
 }
 
 function figure() {
-  const inner = ROWS.reduce((sum, row) => sum + row[3] + GAP, 0);
+  const inner = rows.reduce((sum, row) => sum + row[3] + GAP, 0);
   const last = history.time[history.time.length - 1] ?? 0;
   const top_px = matchMedia("(max-width: 40rem)").matches ? 2 * LEGEND_LINE : LEGEND_LINE;
   /** @type {any} */
@@ -97,13 +131,15 @@ function figure() {
     plot_bgcolor: colour("paper"), font: { color: colour("ink"), size: 12 }, hovermode: false, dragmode: false,
     showlegend: true, legend: { orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" }, annotations: [],
     xaxis: { title: { text: "time, s" }, range: [Math.max(0, last - SHOWN_S), Math.max(last, SHOWN_S)], fixedrange: true, gridcolor: colour("line"),
-      zeroline: false, anchor: `y${ROWS.length}` },
+      zeroline: false, anchor: `y${rows.length}` },
   };
   /** @type {any[]} */
   const traces = measured ? [] : [{ name: "angle sensor, rebuilt", y: history.sensor, yaxis: "y", line: { color: colour("band"), width: 3 } },
-    { name: "set point", y: history.set_point, yaxis: "y", line: { color: colour("measured"), width: 1.2, dash: "dot" } }];
+    ...rows.flatMap(([key], index) => history.wanted[key].some((value) => value !== null) || index === 0
+      ? [{ name: "set point", y: history.wanted[key], yaxis: index === 0 ? "y" : `y${index + 1}`, showlegend: index === 0,
+        line: { color: colour("measured"), width: 1.2, dash: "dot" } }] : [])];
   let top = inner;
-  ROWS.forEach(([key, title, unit, height], index) => {
+  rows.forEach(([key, title, unit, height], index) => {
     const axis = index === 0 ? "" : String(index + 1);
     const high = (top - GAP) / inner, low = Math.max(0, (top - GAP - height) / inner);
     top -= height + GAP;

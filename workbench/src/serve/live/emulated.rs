@@ -212,7 +212,8 @@ fn drive(
 
 impl Exchange {
     fn take(&mut self, sample: Sample, change: Option<PaceChange>) {
-        if self.strip.follow(&sample) {
+        self.strip.follow(&sample);
+        if Strip::shows(&sample) {
             if self.samples.len() == MOST_SAMPLES {
                 self.samples.pop_front();
             }

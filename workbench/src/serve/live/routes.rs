@@ -63,6 +63,9 @@ async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer<Descri
     let started = blocking(move || {
         drop(before);
         let machine = models.machine()?;
+        if let Some(what) = machine.refusal(&orders) {
+            return Err(Refusal::wrong(what));
+        }
         let angle_deg = machine.start_deg(&orders);
         let source = &sessions.loop_source;
         let shown = view(&machine, angle_deg, source)?;

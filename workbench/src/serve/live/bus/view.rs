@@ -53,6 +53,7 @@ pub fn shown(
         fault_text: joined(codes, "; ", words::trouble),
         trip_text: None,
         last_move: None,
+        field: None,
     };
     let connection = Connection {
         connected: state.adapter.is_ok(),

@@ -1,22 +1,18 @@
 //! The loop, in steps of a millisecond.
 
-use crate::closed_loop::OIL_TEMPERATURE_C;
-use hitch_closed_loop::{ClosedLoop, Sample};
 use hitch_field::soil::SoilPlan;
 use hitch_field::terrain::Terrain;
 use hitch_field::tractor::{Demand, Outputs as Field, Readings, Tractor, TractorConstants};
 use hitch_plant::Model;
-use hitch_quantities::units::{
-    Count, Micrometre, MillimetrePerSecond, Newton, PerMille, SupplyShare,
-};
-use hitch_quantities::{Function, Inputs, ValidCalibration};
+use hitch_quantities::units::{MillimetrePerSecond, SupplyShare};
+use hitch_quantities::{Inputs, ValidCalibration};
 
-use super::coupling::Coupling;
+use super::coupling::{Coupling, RAISED_DEG, TOUCH_DEG};
+use super::settings::Settings;
+use crate::closed_loop::{ClosedLoop, Sample};
 
-/// Rocker angle at which the share touches the ground, degree.
-pub const TOUCH_DEG: f64 = 95.0;
-/// Rocker angle of the raised hitch at the start, degree.
-pub const RAISED_DEG: f64 = 125.0;
+/// Depth of the links, m, with which a plough works at 25 cm in loam: the body sinks by the rest (docs/field.md).
+pub const LINK_DEPTH_M: f64 = 0.228;
 /// Output of the depth sensor over its supply at the ground, 1: `depth.zero` of a new machine.
 const DEPTH_ZERO: f64 = 0.25;
 /// Depth that adds the whole supply to it, m: four times `depth.span` of a new machine.
@@ -28,20 +24,30 @@ const CONVERTER_STEP: f64 = 1e5 / 4096.0;
 /// Period in which the bus tells the speeds, ms.
 const BUS_PERIOD_MS: u64 = 100;
 const STEP_S: f64 = 1e-3;
+/// Oil temperature of a start that does not tell it, C.
+const OIL_TEMPERATURE_C: f64 = 40.0;
 
-/// What the operator has set.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Settings {
-    /// Selected function.
-    pub function: Function,
-    /// Set point of the draft, N.
-    pub draft_n: Option<f64>,
-    /// Set point of the depth, m.
-    pub depth_m: Option<f64>,
-    /// Mix dial, 0 to 1.
-    pub mix: Option<f64>,
-    /// Slip limit, 0 to 1.
-    pub slip_limit: Option<f64>,
+/// How a rig starts.
+#[derive(Debug, Clone, Copy)]
+pub struct Start {
+    /// Rocker angle, degree.
+    pub angle_deg: f64,
+    /// Oil temperature, C.
+    pub oil_temperature_c: f64,
+    /// Determines soil and noise.
+    pub seed: u64,
+}
+
+impl Start {
+    /// A raised hitch with warm oil.
+    #[must_use]
+    pub const fn raised(seed: u64) -> Self {
+        Self {
+            angle_deg: RAISED_DEG,
+            oil_temperature_c: OIL_TEMPERATURE_C,
+            seed,
+        }
+    }
 }
 
 /// A millisecond of the loop.
@@ -68,23 +74,35 @@ impl<'m> FieldRig<'m> {
     pub fn new(
         model: &'m Model,
         calibration: &ValidCalibration,
-        (constants, soil): (TractorConstants, SoilPlan),
+        field: (TractorConstants, SoilPlan),
         terrain: Terrain,
         seed: u64,
+    ) -> Self {
+        Self::starting(model, calibration, field, terrain, Start::raised(seed))
+    }
+
+    /// A tractor that stands, whose lever is at the hitch.
+    #[must_use]
+    pub fn starting(
+        model: &'m Model,
+        calibration: &ValidCalibration,
+        (constants, soil): (TractorConstants, SoilPlan),
+        terrain: Terrain,
+        start: Start,
     ) -> Self {
         let implement_kg = constants.implement.mass_kg;
         let mut hitch = ClosedLoop::new(
             model,
             calibration,
             implement_kg,
-            OIL_TEMPERATURE_C,
-            RAISED_DEG,
-            seed,
+            start.oil_temperature_c,
+            start.angle_deg,
+            start.seed,
         );
         hitch.pick_up();
         Self {
             hitch,
-            tractor: Tractor::new(constants, soil, terrain, seed),
+            tractor: Tractor::new(constants, soil, terrain, start.seed),
             coupling: Coupling::new(model, TOUCH_DEG, implement_kg),
             readings: None,
             step: 0,
@@ -100,6 +118,11 @@ impl<'m> FieldRig<'m> {
     /// The tractor.
     pub const fn tractor(&mut self) -> &mut Tractor {
         &mut self.tractor
+    }
+
+    /// Changes the oil temperature, C, while it runs.
+    pub fn set_oil_temperature_c(&mut self, oil_temperature_c: f64) {
+        self.hitch.set_oil_temperature_c(oil_temperature_c);
     }
 
     /// One millisecond; `tell` can modify the inputs of the controller (faults of sensors).
@@ -118,7 +141,7 @@ impl<'m> FieldRig<'m> {
                 if let Some(readings) = readings {
                     add_readings(inputs, &readings, is_told);
                 }
-                add_settings(inputs, settings);
+                settings.tell(inputs);
                 tell(inputs);
             },
             |_, _| {},
@@ -154,15 +177,4 @@ fn add_readings(inputs: &mut Inputs, readings: &Readings, is_told: bool) {
         |m_s: f64| is_told.then_some(MillimetrePerSecond((m_s.max(0.0) * 1e3).round() as i32));
     inputs.ground_speed = speed(readings.ground_speed_m_s);
     inputs.wheel_speed = speed(readings.wheel_speed_m_s);
-}
-
-fn add_settings(inputs: &mut Inputs, settings: &Settings) {
-    let share = |part: f64| PerMille((part * 1e3).round() as i32);
-    inputs.function = Some(Count(settings.function as i32));
-    inputs.draft_set_point = settings.draft_n.map(|force| Newton(force.round() as i32));
-    inputs.depth_set_point = settings
-        .depth_m
-        .map(|depth_m| Micrometre((depth_m * 1e6).round() as i32));
-    inputs.mix = settings.mix.map(share);
-    inputs.slip_limit = settings.slip_limit.map(share);
 }

@@ -11,8 +11,37 @@
 use hitch_field::body::GRAVITY_M_S2;
 use hitch_plant::Model;
 
+/// Rocker angle at which the share touches the ground, degree.
+pub const TOUCH_DEG: f64 = 95.0;
+/// Rocker angle of the raised hitch at the start, degree.
+pub const RAISED_DEG: f64 = 125.0;
 /// Rocker angles just inside the ends of the travel, degree.
 const ENDS_DEG: [f64; 2] = [44.1, 135.9];
+
+/// Deepest links that the work on a field asks for, m.
+const DEEPEST_M: f64 = 0.30;
+
+/// The links are too short for the work on a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the work on a field needs links that reach from {RAISED_DEG} degrees to {deepest_cm:.0} cm below the height at \
+     {TOUCH_DEG} degrees; this model's do not",
+    deepest_cm = DEEPEST_M * 100.0
+)]
+pub struct OutOfReach;
+
+/// Checks that the links of a model reach from the raised hitch to the depths of the work.
+///
+/// # Errors
+/// If they do not.
+pub fn check_reach(model: &Model) -> Result<(), OutOfReach> {
+    let coupling = Coupling::new(model, TOUCH_DEG, 0.0);
+    if coupling.reaches(DEEPEST_M) && coupling.reaches(coupling.depth_m(RAISED_DEG)) {
+        Ok(())
+    } else {
+        Err(OutOfReach)
+    }
+}
 
 /// Geometry of the coupling.
 #[derive(Debug, Clone, Copy)]
