@@ -96,5 +96,6 @@ pub const fn trouble(trouble: Trouble) -> &'static str {
         Trouble::DepthRange => "the depth sensor is missing or out of its range",
         Trouble::DepthFrozen => "the depth sensor is frozen",
         Trouble::DepthNoisy => "the depth sensor is too noisy",
+        Trouble::PinNoisy => "a draft pin is too noisy",
     }
 }
