@@ -8,7 +8,6 @@
 //! ```
 
 pub mod coupling;
-pub mod field_figure;
 pub mod figures;
 pub mod pass;
 pub mod rig;
