@@ -13,15 +13,11 @@ const COLUMNS: [Wanted; 2] = [
         quantity: "current",
         words: &[],
         units: &["A", "mA"],
-        offered: "A or mA",
-        example: EXAMPLE,
     },
     Wanted {
         quantity: "flow",
         words: &[],
         units: &["l/min", "l/s", "gpm", "m3/s"],
-        offered: "l/min, l/s, gpm or m3/s",
-        example: EXAMPLE,
     },
 ];
 
@@ -30,7 +26,7 @@ const COLUMNS: [Wanted; 2] = [
 /// # Errors
 /// A fault in the table, by line and column.
 pub fn of(source: &SourceFile) -> Result<ValveCurve, InputError> {
-    let table = NumberTable::read(source, &COLUMNS)?;
+    let table = NumberTable::read(source, &COLUMNS, EXAMPLE)?;
     let ([currents, flows], bytes) = (table.columns, table.bytes);
     let passes_at_rest = flows.first().is_some_and(|&flow| flow > 0.0);
     if passes_at_rest {

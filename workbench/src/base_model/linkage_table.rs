@@ -14,22 +14,16 @@ const COLUMNS: [Wanted; 3] = [
         quantity: "travel",
         words: &["travel", "stroke", "hub", "weg"],
         units: LENGTHS,
-        offered: "mm, cm or m",
-        example: EXAMPLE,
     },
     Wanted {
         quantity: "angle",
         words: &["angle", "winkel"],
         units: &["deg", "rad"],
-        offered: "deg or rad",
-        example: EXAMPLE,
     },
     Wanted {
         quantity: "height",
         words: &["height", "h\u{f6}he", "hoehe"],
         units: LENGTHS,
-        offered: "mm, cm or m",
-        example: EXAMPLE,
     },
 ];
 
@@ -39,7 +33,7 @@ const COLUMNS: [Wanted; 3] = [
 /// # Errors
 /// A fault in the table, by line.
 pub fn of(source: &SourceFile) -> Result<LinkageTable, InputError> {
-    let table = NumberTable::read(source, &COLUMNS)?;
+    let table = NumberTable::read(source, &COLUMNS, EXAMPLE)?;
     let [travel_m, angle_rad, height_m] = table.columns;
     LinkageTable::new(travel_m, angle_rad, height_m).map_err(|fault| match fault {
         LinkageTableError::Order { index } => source.error_at(

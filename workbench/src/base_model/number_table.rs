@@ -13,10 +13,6 @@ pub struct Wanted {
     pub words: &'static [&'static str],
     /// Its units.
     pub units: &'static [&'static str],
-    /// The units, for messages.
-    pub offered: &'static str,
-    /// Example of a header.
-    pub example: &'static str,
 }
 
 /// Columns of numbers, in SI.
@@ -29,13 +25,16 @@ pub struct NumberTable<const N: usize> {
 }
 
 impl<const N: usize> NumberTable<N> {
-    /// Reads the columns; rows that are empty or begin with `#` are skipped.
+    /// Reads the columns, under a header as in `example`; rows that are empty or begin with `#` are skipped.
     ///
     /// # Errors
     /// A fault in the table, by line.
-    pub fn read(source: &SourceFile, wanted: &[Wanted; N]) -> Result<Self, InputError> {
+    pub fn read(
+        source: &SourceFile,
+        wanted: &[Wanted; N],
+        example: &str,
+    ) -> Result<Self, InputError> {
         let table = text_table(source)?.ok_or_else(|| {
-            let example = wanted[0].example;
             let hint = format!(
                 "write a header such as {example} above the numbers, and one row for each point"
             );
@@ -44,8 +43,9 @@ impl<const N: usize> NumberTable<N> {
         let mut columns = [const { Vec::new() }; N];
         for (values, wanted) in columns.iter_mut().zip(wanted) {
             let (found, si) = column(&table.columns, wanted).ok_or_else(|| {
-                let what = format!("no column is a {} in {}", wanted.quantity, wanted.offered);
-                let hint = format!("write the unit in the header, as in {}", wanted.example);
+                let units = wanted.units.join(" or ");
+                let what = format!("no column is a {} in {units}", wanted.quantity);
+                let hint = format!("write the unit in the header, as in {example}");
                 source.error_at(table.header, what, hint)
             })?;
             if let Some(row) = found.values.iter().position(|value| value.is_nan()) {

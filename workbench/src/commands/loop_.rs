@@ -9,6 +9,7 @@ use hitch_quantities::ValidCalibration;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::closed_loop::ScenarioFigure;
 use crate::closed_loop::show::{presses_text, text};
 use crate::closed_loop::show_variants;
 use crate::closed_loop::variant::{self, BASE, Variant};
@@ -18,7 +19,6 @@ use crate::closed_loop::{
 };
 use crate::commands::loop_scenario::{self, LoopScenario};
 use crate::error::Error;
-use crate::field_loop::field_figure::FieldFigure;
 use crate::field_loop::scenario::{self, FieldRun, FieldScenario};
 use crate::output::JsonArg;
 use crate::output::progress::Progress;
@@ -97,7 +97,7 @@ struct Figures<'a> {
     press_summary: Option<PressSummary>,
     /// Figures of a function in the field; absent for other scenarios.
     #[serde(skip_serializing_if = "Option::is_none")]
-    field: Option<&'a [FieldFigure]>,
+    field: Option<&'a [ScenarioFigure]>,
 }
 
 impl<'a> Figures<'a> {

@@ -9,7 +9,7 @@ use hitch_quantities::Calibration;
 use crate::closed_loop::{self, LoopRun, Move, Press, PressRun, Scenario, run_presses};
 use crate::commands::loop_::{changed, load_kg, read_files};
 use crate::commands::tune_field;
-use crate::commands::tune_result::{Figures, Found, Search, Tuned};
+use crate::commands::tune_result::{Found, Search, Tuned};
 use crate::commands::tune_scenario::TuneScenario;
 use crate::error::Error;
 use crate::output::progress::Progress;
@@ -135,15 +135,10 @@ impl Args {
         let after = search
             .told(|tell| trial.search(base, search.fixed, search.trials, tell))
             .ok_or_else(Search::nothing)?;
-        let figures = |judged: &Judged| Figures {
-            cost: judged.cost,
-            summary: judged.summary,
-            presses: judged.presses,
-        };
         let tuned = Tuned {
             changes: trial.changes(&before.calibration, &after.calibration),
-            before: figures(&before),
-            after: figures(&after),
+            before: before.figures,
+            after: after.figures,
             figures: before.compared(&after),
         };
         let page = match &self.report {

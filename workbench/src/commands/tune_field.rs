@@ -3,7 +3,7 @@
 use hitch_closed_loop::driven::MachineError;
 use hitch_closed_loop::with_dynamics;
 
-use super::tune_result::{Figures, Found, Search, Tuned};
+use super::tune_result::{Found, Search, Tuned};
 use crate::error::Error;
 use crate::field_loop::scenario::FieldScenario;
 use crate::output::progress::Progress;
@@ -33,8 +33,8 @@ pub fn tuned(search: &Search<'_>, scenario: FieldScenario) -> Result<Found, Erro
         .map_err(Error::Usage)?;
     let tuned = Tuned {
         changes: trial.changes(search.base, &best.calibration),
-        before: Figures::of_cost(before.cost),
-        after: Figures::of_cost(after.cost),
+        before: before.figures,
+        after: after.figures,
         figures: before.compared(&after),
     };
     let page = tuning_page::page(&tuning_page::Shown {

@@ -8,12 +8,11 @@ use hitch_quantities::ValidCalibration;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::closed_loop::{PressSummary, Summary};
 use crate::error::Error;
 use crate::output::progress::Progress;
 use crate::text::Table;
 use crate::tuning::Change;
-use crate::tuning::figures::{self, Figure};
+use crate::tuning::figures::{self, Figure, Figures};
 
 /// Result of `hitch tune`.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -26,19 +25,6 @@ pub struct Tuned {
     pub after: Figures,
     /// The figures that have names in the text, with their limits.
     pub figures: Vec<Figure>,
-}
-
-/// Figures of a calibration on the plant and its neighbours.
-#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-pub struct Figures {
-    /// Cost, the objective of the search; a smaller one is better.
-    pub cost: f64,
-    /// Figures of all moves; absent without moves.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub summary: Option<Summary>,
-    /// Figures of all presses of the button; absent without presses.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub presses: Option<PressSummary>,
 }
 
 /// What is searched from.
@@ -88,17 +74,6 @@ impl Tuned {
     /// Whether the tuned calibration is worse than the initial one.
     pub fn is_worse(&self) -> bool {
         self.after.cost > self.before.cost
-    }
-}
-
-impl Figures {
-    /// A cost alone.
-    pub fn of_cost(cost: f64) -> Self {
-        Self {
-            cost,
-            summary: None,
-            presses: None,
-        }
     }
 }
 

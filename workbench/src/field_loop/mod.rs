@@ -1,6 +1,5 @@
 //! Passes of the tractor over fields and roads, with the hitch and its controller: `hitch_closed_loop::field`.
 
-pub mod field_figure;
 pub mod figures;
 pub mod pass;
 pub mod scenario;

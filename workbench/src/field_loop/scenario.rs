@@ -12,11 +12,11 @@ use hitch_plant::Model;
 use hitch_quantities::units::Count;
 use hitch_quantities::{Function, ValidCalibration};
 
-use super::field_figure::FieldFigure;
 use super::figures::Spread;
 use super::pass::{Comparison, DEPTH_M, DRAFT_N, Pass, SPEED_M_S};
 use super::transport::{Ride, RideComparison, class_c};
 use super::undulation::{self, DepthFigures};
+use crate::closed_loop::ScenarioFigure;
 use hitch_closed_loop::Sample;
 use hitch_closed_loop::field::{
     Coupling, FieldRig, FieldSample, LINK_DEPTH_M, RAISED_DEG, Settings, check_reach, fitted,
@@ -46,7 +46,7 @@ pub enum FieldScenario {
 #[derive(Debug, Clone)]
 pub struct FieldRun {
     /// Its figures.
-    pub figures: Vec<FieldFigure>,
+    pub figures: Vec<ScenarioFigure>,
     /// Hitch and controller over one course of it, in steps of a millisecond.
     pub hitch: Vec<Sample>,
     /// Tractor and field of the same steps; empty on a road.
@@ -54,7 +54,7 @@ pub struct FieldRun {
 }
 
 impl FieldRun {
-    fn of(figures: Vec<FieldFigure>, course: &[FieldSample]) -> Self {
+    fn of(figures: Vec<ScenarioFigure>, course: &[FieldSample]) -> Self {
         Self {
             figures,
             hitch: course.iter().map(|sample| sample.hitch).collect(),
@@ -120,25 +120,25 @@ fn compared(
 ) -> FieldRun {
     let found = Comparison::of(model, function, calibration, seeds(first_seed));
     let figures = vec![
-        FieldFigure::new(
+        ScenarioFigure::new(
             "deviation of the draft over that of position control",
             found.draft_ratio,
             "",
             most_draft,
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "the same through a low-pass of 3.2 Hz",
             found.filtered_ratio,
             "",
             None,
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "deviation of the depth over its mean",
             found.depth_ratio * 100.0,
             "%",
             most_depth,
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "coil activations",
             found.activations_per_min,
             "1/min",
@@ -176,13 +176,13 @@ fn draft(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> Fiel
     let late = harder.clone().take_while(|off| off.abs() > 0.05).count();
     let lowest = harder.copied().fold(0.0, f64::min);
     run.figures.extend([
-        FieldFigure::new(
+        ScenarioFigure::new(
             "from coarse to fine soil: within 5 % after",
             late as f64 * 1e-3,
             "s",
             Some(2.0),
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "from coarse to fine soil: draft below its set point by",
             -lowest * 100.0,
             "%",
@@ -231,19 +231,19 @@ fn slip(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> Field
     let change = (depth_m(to + 3_000) / depth_m(from.saturating_sub(1)) - 1.0).abs();
     let varying = over(SoilPlan::varying(Texture::Medium));
     let figures = vec![
-        FieldFigure::new(
+        ScenarioFigure::new(
             "slip at most",
             most_percent(&samples),
             "%",
             Some((LIMIT + 0.05) * 100.0),
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "change of the depth 3 s after the patch",
             change * 100.0,
             "%",
             Some(5.0),
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "slip at most in varying loam",
             most_percent(&varying),
             "%",
@@ -282,15 +282,15 @@ fn depth(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> Fiel
     );
     let found = DepthFigures::of(&limited);
     let mut figures = vec![
-        FieldFigure::new("out of the ground", found.out * 100.0, "%", Some(0.0)),
-        FieldFigure::new(
+        ScenarioFigure::new("out of the ground", found.out * 100.0, "%", Some(0.0)),
+        ScenarioFigure::new(
             "depth further than 10 % from its mean",
             found.beyond * 100.0,
             "%",
             Some(5.0),
         ),
-        FieldFigure::new("mean depth", found.depth_m.mean * 100.0, "cm", None),
-        FieldFigure::new("coil activations", found.activations_per_min, "1/min", None),
+        ScenarioFigure::new("mean depth", found.depth_m.mean * 100.0, "cm", None),
+        ScenarioFigure::new("coil activations", found.activations_per_min, "1/min", None),
     ];
     let course = if calibration.depth.fitted == Count(0) {
         limited
@@ -311,34 +311,34 @@ fn depth(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> Fiel
 }
 
 /// Figures of depth control with the external sensor, and of position control on the same way.
-fn of_sensor(sensed: &[FieldSample], lever: &[FieldSample]) -> [FieldFigure; 5] {
+fn of_sensor(sensed: &[FieldSample], lever: &[FieldSample]) -> [ScenarioFigure; 5] {
     let [sensed, lever] = [sensed, lever].map(DepthFigures::of);
     [
-        FieldFigure::new(
+        ScenarioFigure::new(
             "depth sensor: out of the ground",
             sensed.out * 100.0,
             "%",
             Some(0.0),
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "depth sensor: depth further than 10 % from its mean",
             sensed.beyond * 100.0,
             "%",
             Some(5.0),
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "depth sensor: mean depth",
             sensed.depth_m.mean * 100.0,
             "cm",
             None,
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "depth sensor: deviation of the depth over that of position control",
             sensed.depth_m.deviation / lever.depth_m.deviation,
             "",
             None,
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "depth sensor: coil activations",
             sensed.activations_per_min,
             "1/min",
@@ -394,19 +394,19 @@ fn headland(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> F
         .map(|sample| sample.field.depth_m)
         .fold(0.0, f64::max);
     let figures = vec![
-        FieldFigure::new(
+        ScenarioFigure::new(
             "out of the ground after the lever was raised",
             out as f64 * 1e-3,
             "s",
             None,
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "back at 90 % of the depth after it was lowered",
             back as f64 * 1e-3,
             "s",
             None,
         ),
-        FieldFigure::new(
+        ScenarioFigure::new(
             "deepest then, over the depth before",
             deepest_m / depth_m,
             "",
@@ -428,31 +428,31 @@ fn transport(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> 
         let damped = &found.damped;
         let name = |what: &str| format!("{km_h:.0} km/h: {what}");
         figures.extend([
-            FieldFigure::new(
+            ScenarioFigure::new(
                 &name("pitch acceleration over that of a hitch that holds"),
                 found.pitch_ratio(),
                 "",
                 Some(0.75),
             ),
-            FieldFigure::new(
+            ScenarioFigure::new(
                 &name("pressure peak over the same"),
                 found.peak_ratio(),
                 "",
                 Some(0.8),
             ),
-            FieldFigure::new(
+            ScenarioFigure::new(
                 &name("angle from the lever"),
                 damped.off_deg,
                 "deg",
                 Some(3.0),
             ),
-            FieldFigure::new(
+            ScenarioFigure::new(
                 &name("square of the coil currents"),
                 damped.coil_a2,
                 "A2",
                 None,
             ),
-            FieldFigure::new(
+            ScenarioFigure::new(
                 &name("coil activations"),
                 damped.activations_per_min,
                 "1/min",

@@ -1,6 +1,6 @@
 //! Figures of a scenario of the field as a table, for terminal and report.
 
-use super::field_figure::FieldFigure;
+use crate::closed_loop::ScenarioFigure;
 use crate::text::{Table, known};
 
 /// Header of the table.
@@ -8,7 +8,7 @@ pub const HEADER: [&str; 3] = ["figure", "value", "required"];
 
 /// Row of a figure under [`HEADER`].
 #[must_use]
-pub fn row(figure: &FieldFigure) -> [String; 3] {
+pub fn row(figure: &ScenarioFigure) -> [String; 3] {
     let with_unit = |value: f64| {
         format!("{} {}", known(value, 2), figure.unit)
             .trim_end()
@@ -24,7 +24,7 @@ pub fn row(figure: &FieldFigure) -> [String; 3] {
 
 /// The figures as a table for a terminal.
 #[must_use]
-pub fn text(figures: &[FieldFigure]) -> String {
+pub fn text(figures: &[ScenarioFigure]) -> String {
     let mut table = Table::new(HEADER);
     for figure in figures {
         table.row(row(figure));

@@ -20,7 +20,7 @@ use crate::output::archive::zipped;
 use crate::report::{comparison_page, explanation_page};
 use hitch_closed_loop::driven::calibration;
 
-const TOML: &str = "application/toml; charset=utf-8";
+pub(super) const TOML: &str = "application/toml; charset=utf-8";
 
 /// All routes of saved files.
 pub fn routes() -> Router<Arc<Sessions>> {

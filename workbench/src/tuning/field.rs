@@ -6,10 +6,10 @@ use hitch_plant::Model;
 use hitch_quantities::{Calibration, ValidCalibration};
 
 use super::Change;
-use super::figures::Figure;
-use super::knobs::{changes, with_values, without};
-use super::search::{Costly, search};
-use crate::field_loop::field_figure::FieldFigure;
+use super::figures::{Figures, Judged};
+use super::knobs::{changes, without};
+use super::search::search;
+use crate::closed_loop::ScenarioFigure;
 use crate::field_loop::scenario::{FieldScenario, drive};
 
 /// First seed of the soils that the search drives on.
@@ -48,23 +48,6 @@ pub struct FieldTrial<'a> {
     knobs: &'static [&'static str],
 }
 
-/// A calibration with the figures of a scenario.
-#[derive(Debug, Clone)]
-pub struct FieldJudged {
-    /// The calibration.
-    pub calibration: ValidCalibration,
-    /// The figures.
-    pub figures: Vec<FieldFigure>,
-    /// Cost, the objective of the search.
-    pub cost: f64,
-}
-
-impl Costly for FieldJudged {
-    fn cost(&self) -> f64 {
-        self.cost
-    }
-}
-
 impl<'a> FieldTrial<'a> {
     /// Prepares a scenario; `None` if it has no requirements that could be tuned for.
     #[must_use]
@@ -82,28 +65,23 @@ impl<'a> FieldTrial<'a> {
         })
     }
 
-    fn driven(&self, calibration: &ValidCalibration, seed: u64) -> Result<FieldJudged, String> {
-        let figures = drive(self.scenario, self.model, calibration, seed)?.figures;
-        Ok(FieldJudged {
+    fn driven(&self, calibration: &ValidCalibration, seed: u64) -> Result<Judged, String> {
+        let named = drive(self.scenario, self.model, calibration, seed)?.figures;
+        Ok(Judged {
             calibration: calibration.clone(),
-            cost: cost(&figures),
-            figures,
+            figures: Figures {
+                cost: cost(&named),
+                ..Figures::default()
+            },
+            named,
         })
-    }
-
-    /// Drives the scenario on the soils of the search.
-    ///
-    /// # Errors
-    /// If the model cannot drive it.
-    pub fn judge(&self, calibration: &ValidCalibration) -> Result<FieldJudged, String> {
-        self.driven(calibration, SEARCHED)
     }
 
     /// Drives the scenario on soils that the search has not seen.
     ///
     /// # Errors
     /// If the model cannot drive it.
-    pub fn judge_unseen(&self, calibration: &ValidCalibration) -> Result<FieldJudged, String> {
+    pub fn judge_unseen(&self, calibration: &ValidCalibration) -> Result<Judged, String> {
         self.driven(calibration, UNSEEN)
     }
 
@@ -115,10 +93,10 @@ impl<'a> FieldTrial<'a> {
         fixed: &[String],
         trials: usize,
         tell: impl Fn(usize, f64) -> ControlFlow<()> + Sync,
-    ) -> Option<FieldJudged> {
+    ) -> Option<Judged> {
         let knobs = without(self.knobs, fixed);
-        search(knobs.len(), trials, tell, |point| {
-            self.judge(&with_values(base, &knobs, None, point)?).ok()
+        search(base, &knobs, None, trials, tell, |candidate| {
+            self.driven(candidate, SEARCHED).ok()
         })
     }
 
@@ -129,24 +107,9 @@ impl<'a> FieldTrial<'a> {
     }
 }
 
-impl FieldJudged {
-    /// The figures of this initial calibration beside those of a tuned one.
-    #[must_use]
-    pub fn compared(&self, after: &Self) -> Vec<Figure> {
-        let pairs = self.figures.iter().zip(&after.figures);
-        let figure = |(before, after): (&FieldFigure, &FieldFigure)| {
-            let unit = if before.unit.is_empty() { "" } else { ", " };
-            let name = format!("{}{unit}{}", before.name, before.unit);
-            Figure::new(name, before.required, before.value, after.value)
-        };
-        let cost = Figure::new("cost", None, self.cost, after.cost);
-        pairs.map(figure).chain([cost]).collect()
-    }
-}
-
 /// Mean over the figures with a requirement of their ratio to it, what exceeds the requirement tenfold. Of a requirement of zero, one unit is
 /// the ratio one.
-fn cost(figures: &[FieldFigure]) -> f64 {
+fn cost(figures: &[ScenarioFigure]) -> f64 {
     let ratios: Vec<f64> = figures
         .iter()
         .filter_map(|figure| {
@@ -166,8 +129,8 @@ fn cost(figures: &[FieldFigure]) -> f64 {
 mod tests {
     use super::*;
 
-    fn figure(value: f64, required: Option<f64>) -> FieldFigure {
-        FieldFigure {
+    fn figure(value: f64, required: Option<f64>) -> ScenarioFigure {
+        ScenarioFigure {
             name: "slip".to_owned(),
             value,
             unit: "%",

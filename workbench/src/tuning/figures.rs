@@ -1,10 +1,50 @@
 //! Figures of a tuned calibration beside those of the initial one, and whether each is within its limit.
 
+use hitch_quantities::ValidCalibration;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::closed_loop::{PressSummary, Summary};
+use crate::closed_loop::{PressSummary, ScenarioFigure, Summary};
 use crate::text::known;
+
+/// Figures of a calibration on the plant and its neighbours.
+#[derive(Debug, Clone, Copy, Default, Serialize, JsonSchema)]
+pub struct Figures {
+    /// Cost, the objective of the search; a smaller one is better.
+    pub cost: f64,
+    /// Figures of all moves; absent without moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub summary: Option<Summary>,
+    /// Figures of all presses of the button; absent without presses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub presses: Option<PressSummary>,
+}
+
+/// A calibration with its figures.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// The calibration.
+    pub calibration: ValidCalibration,
+    /// Its cost, with the figures of moves and presses.
+    pub figures: Figures,
+    /// The figures that have names in the text, with their limits.
+    pub named: Vec<ScenarioFigure>,
+}
+
+impl Judged {
+    /// The figures of this initial calibration beside those of a tuned one.
+    #[must_use]
+    pub fn compared(&self, after: &Self) -> Vec<Figure> {
+        let figure = |(before, after): (&ScenarioFigure, &ScenarioFigure)| {
+            let unit = if before.unit.is_empty() { "" } else { ", " };
+            let name = format!("{}{unit}{}", before.name, before.unit);
+            Figure::new(name, before.required, before.value, after.value)
+        };
+        let cost = Figure::new("cost", None, self.figures.cost, after.figures.cost);
+        let pairs = self.named.iter().zip(&after.named);
+        pairs.map(figure).chain([cost]).collect()
+    }
+}
 
 /// A figure of both calibrations.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -61,18 +101,12 @@ impl Figure {
     }
 }
 
-/// The figures of moves, presses and cost, each of the initial and of the tuned calibration.
-#[must_use]
-pub fn compared(
-    moves: Option<[&Summary; 2]>,
-    presses: Option<[&PressSummary; 2]>,
-    cost: [f64; 2],
-) -> Vec<Figure> {
-    let mut figures = Vec::new();
-    figures.extend(moves.into_iter().flat_map(of_moves));
-    figures.extend(presses.into_iter().flat_map(of_presses));
-    figures.push(Figure::new("cost", None, cost[0], cost[1]));
-    figures
+/// The figures of moves and presses that have names in the text.
+pub fn named(moves: Option<&Summary>, presses: Option<&PressSummary>) -> Vec<ScenarioFigure> {
+    let moves = moves.into_iter().flat_map(of_moves);
+    moves
+        .chain(presses.into_iter().flat_map(of_presses))
+        .collect()
 }
 
 /// How many limits are met, as a sentence; `None` without limits.
@@ -92,35 +126,37 @@ pub fn sentence(figures: &[Figure]) -> Option<String> {
     }
 }
 
-fn of_moves([before, after]: [&Summary; 2]) -> [Figure; 6] {
-    let of = |name: &str, limit: f64, value: fn(&Summary) -> f64| {
-        Figure::new(name, Some(limit), value(before), value(after))
-    };
+fn of_moves(all: &Summary) -> [ScenarioFigure; 6] {
+    let of = |name: &str, unit, limit, value| ScenarioFigure::new(name, value, unit, Some(limit));
     [
-        of("time ratio, median", 1.15, |all| all.ratio_median),
-        of("time ratio, 95 %", 1.4, |all| all.ratio_p95),
-        of("overshoot, deg", 0.3, |all| all.overshoot_max_deg),
-        of("final error, deg", 0.3, |all| all.final_error_max_deg),
-        of("pressure swing", 1.5, |all| all.pressure_swing_ratio_max),
-        of("coil activations after arrival", 0.0, |all| {
-            f64::from(all.switched_on_after)
-        }),
+        of("time ratio, median", "", 1.15, all.ratio_median),
+        of("time ratio, 95 %", "", 1.4, all.ratio_p95),
+        of("overshoot", "deg", 0.3, all.overshoot_max_deg),
+        of("final error", "deg", 0.3, all.final_error_max_deg),
+        of("pressure swing", "", 1.5, all.pressure_swing_ratio_max),
+        of(
+            "coil activations after arrival",
+            "",
+            0.0,
+            f64::from(all.switched_on_after),
+        ),
     ]
 }
 
-fn of_presses([before, after]: [&PressSummary; 2]) -> [Figure; 4] {
-    let of = |name: &str, limit: Option<f64>, value: fn(&PressSummary) -> f64| {
-        Figure::new(name, limit, value(before), value(after))
+fn of_presses(all: &PressSummary) -> [ScenarioFigure; 4] {
+    let of = |name: &str, unit, limit, value| {
+        ScenarioFigure::new(&format!("button: {name}"), value, unit, limit)
     };
     [
-        of("button: error of the steady speed", Some(0.05), |all| {
-            all.speed_error_max
-        }),
-        of("button: overshoot of the speed", None, |all| {
-            all.speed_overshoot_max
-        }),
-        of("button: latest start, s", None, |all| all.start_delay_max_s),
-        of("button: latest stop, s", None, |all| all.stop_delay_max_s),
+        of(
+            "error of the steady speed",
+            "",
+            Some(0.05),
+            all.speed_error_max,
+        ),
+        of("overshoot of the speed", "", None, all.speed_overshoot_max),
+        of("latest start", "s", None, all.start_delay_max_s),
+        of("latest stop", "s", None, all.stop_delay_max_s),
     ]
 }
 

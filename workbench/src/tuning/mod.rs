@@ -17,9 +17,9 @@ use hitch_effects::find;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::{Calibration, ValidCalibration};
 
-use figures::Figure;
-use knobs::{Least, tuned_by, with_values, without};
-use search::{Costly, search};
+use figures::Figures;
+use knobs::{Least, tuned_by, without};
+use search::search;
 
 use crate::closed_loop::{
     self, Course, Move, MoveResult, Press, PressResult, PressSummary, Summary, courses, run_presses,
@@ -27,7 +27,8 @@ use crate::closed_loop::{
 
 pub use change::Change;
 pub use cost::{cost, press_cost};
-pub use field::{FieldJudged, FieldTrial};
+pub use field::FieldTrial;
+pub use figures::Judged;
 pub use knobs::KNOBS;
 
 /// Residual error of a threshold after teaching, A.
@@ -55,43 +56,6 @@ pub struct Trial {
     presses: Vec<Press>,
     /// The values that the moves and presses can tune.
     knobs: Vec<&'static str>,
-}
-
-/// A calibration with its figures.
-#[derive(Debug, Clone)]
-pub struct Judged {
-    /// The calibration.
-    pub calibration: ValidCalibration,
-    /// Figures of all moves on all plants; `None` without moves.
-    pub summary: Option<Summary>,
-    /// Figures of all presses on all plants; `None` without presses.
-    pub presses: Option<PressSummary>,
-    /// Cost, the objective of the search.
-    pub cost: f64,
-}
-
-impl Costly for Judged {
-    fn cost(&self) -> f64 {
-        self.cost
-    }
-}
-
-impl Judged {
-    /// The figures of this initial calibration beside those of a tuned one.
-    #[must_use]
-    pub fn compared(&self, after: &Self) -> Vec<Figure> {
-        figures::compared(
-            self.summary
-                .as_ref()
-                .zip(after.summary.as_ref())
-                .map(Into::into),
-            self.presses
-                .as_ref()
-                .zip(after.presses.as_ref())
-                .map(Into::into),
-            [self.cost, after.cost],
-        )
-    }
 }
 
 impl Trial {
@@ -140,15 +104,17 @@ impl Trial {
         let (summary, presses) = (Summary::of(&results), PressSummary::of(&pressed));
         (summary.is_some() || presses.is_some()).then(|| Judged {
             calibration: calibration.clone(),
-            summary,
-            presses,
-            cost: cost(&results) + press_cost(&pressed),
+            named: figures::named(summary.as_ref(), presses.as_ref()),
+            figures: Figures {
+                cost: cost(&results) + press_cost(&pressed),
+                summary,
+                presses,
+            },
         })
     }
 
     /// Searches from `base` with at most `trials` candidates. Values named in `fixed` (as in `position.creep_speed`) are
-    /// not changed. `tell` is called after each candidate with their number so far and the best cost; the search ends with its
-    /// best so far when it answers `Break`.
+    /// not changed. `tell` as in [`search()`].
     #[must_use]
     pub fn search(
         &self,
@@ -158,9 +124,8 @@ impl Trial {
         tell: impl Fn(usize, f64) -> ControlFlow<()> + Sync,
     ) -> Option<Judged> {
         let knobs = without(&self.knobs, fixed);
-        let turned = |point: &[f64]| with_values(base, &knobs, Some(self.least), point);
-        search(knobs.len(), trials, tell, |point| {
-            self.judge(&turned(point)?)
+        search(base, &knobs, Some(self.least), trials, tell, |candidate| {
+            self.judge(candidate)
         })
     }
 

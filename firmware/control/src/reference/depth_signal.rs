@@ -6,12 +6,11 @@
 
 use hitch_quantities::calibration::field_parameters::{DepthParameters, DraftParameters};
 use hitch_quantities::fixed::{Divisor, mul_div};
-use hitch_quantities::units::{Micrometre, Millisecond};
+use hitch_quantities::units::Micrometre;
 use hitch_quantities::{Inputs, Trouble};
 
-use super::low_pass::LowPass;
 use super::noise_check::NoiseCheck;
-use super::plausibility::{Plausibility, Signal, Still};
+use super::soil_sensor::{Signal, SoilSensor, Still};
 
 /// A quarter of the supply, as of a pin.
 const QUARTER: Divisor = Divisor::at_least_one(25_000);
@@ -19,11 +18,9 @@ const QUARTER: Divisor = Divisor::at_least_one(25_000);
 /// Depth sensor from step to step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DepthSignal {
-    filter: LowPass,
     noise: NoiseCheck,
     still: Still,
-    plausibility: Plausibility,
-    in_soil: bool,
+    sensor: SoilSensor,
 }
 
 impl DepthSignal {
@@ -36,11 +33,6 @@ impl DepthSignal {
     ) -> Signal<Micrometre> {
         let range = pins.output_min..=pins.output_max;
         let still = self.still.step(inputs.depth_sensor);
-        let still = if self.in_soil {
-            still
-        } else {
-            Millisecond::ZERO
-        };
         let depth = inputs
             .depth_sensor
             .filter(|output| range.contains(output))
@@ -48,33 +40,19 @@ impl DepthSignal {
             .ok_or(Trouble::DepthRange)
             .and_then(|depth| {
                 let is_noisy = self.noise.is_noisy(depth, parameters.noise_limit.0);
-                (!is_noisy)
-                    .then_some(Micrometre(depth))
-                    .ok_or(Trouble::DepthNoisy)
+                (!is_noisy).then_some(depth).ok_or(Trouble::DepthNoisy)
             });
         let still = (still, Trouble::DepthFrozen);
-        let (depth, is_first) = match self.plausibility.step(depth, still, pins) {
-            Ok(sample) => sample,
-            Err(Signal::Lost(trouble)) => return Signal::Lost(trouble),
-            Err(_) => return Signal::Suspect,
-        };
-        if is_first {
-            self.filter.reset();
-        }
-        let depth = Micrometre(self.filter.step(depth.0, parameters.filter));
-        let least = if self.in_soil {
-            Micrometre::ZERO
-        } else {
-            parameters.dead_band
-        };
-        self.in_soil = depth > least;
-        Signal::Measured(depth)
+        let soil = [parameters.dead_band.0, 0];
+        self.sensor
+            .step(depth, still, parameters.filter, soil, pins)
+            .map_or_else(|signal| signal, |depth| Signal::Measured(Micrometre(depth)))
     }
 
     /// Whether the implement is in the soil: from the dead band of the depth until it has left the ground.
     #[must_use]
     pub const fn is_in_soil(&self) -> bool {
-        self.in_soil
+        self.sensor.is_in_soil()
     }
 }
 

@@ -2,12 +2,11 @@
 
 use hitch_quantities::calibration::field_parameters::DraftParameters;
 use hitch_quantities::fixed::{Divisor, mul_div};
-use hitch_quantities::units::{MilliHertz, Millisecond, Newton, SupplyShare};
+use hitch_quantities::units::{Newton, SupplyShare};
 use hitch_quantities::{Inputs, Trouble};
 
-use super::low_pass::LowPass;
 use super::noise_check::NoiseCheck;
-use super::plausibility::{Plausibility, Signal, Still};
+use super::soil_sensor::{Signal, SoilSensor, Still};
 
 /// A quarter of the supply: the swing of a pin at its span.
 const QUARTER: Divisor = Divisor::at_least_one(25_000);
@@ -18,39 +17,35 @@ pub type Draft = Signal<Newton>;
 /// Draft pins from step to step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DraftSignal {
-    filter: LowPass,
     left: Still,
     right: Still,
     /// Of the left and the right pin.
     noise: [NoiseCheck; 2],
-    plausibility: Plausibility,
-    in_soil: bool,
+    sensor: SoilSensor,
 }
 
 impl DraftSignal {
     /// One step; `moves`: the hitch moves.
     pub fn step(&mut self, inputs: &Inputs, moves: bool, parameters: &DraftParameters) -> Draft {
-        let still = [
-            self.left.step(inputs.left_pin),
-            self.right.step(inputs.right_pin),
-        ];
-        let still = if self.in_soil {
-            still.into_iter().max().unwrap_or_default()
+        let left = self.left.step(inputs.left_pin);
+        let still = left.max(self.right.step(inputs.right_pin));
+        let draft = self.if_quiet(inputs, parameters).map(|draft| draft.0);
+        let corner = if moves && !self.is_in_soil() {
+            parameters.raised_filter
         } else {
-            Millisecond::ZERO
+            parameters.work_filter
         };
-        let forces = self.if_quiet(inputs, parameters);
+        let soil = [parameters.soil_draft.0, parameters.soil_draft.0 / 2];
         let still = (still, Trouble::PinFrozen);
-        match self.plausibility.step(forces, still, parameters) {
-            Ok((draft, is_first)) => self.plausible(draft, is_first, moves, parameters),
-            Err(signal) => signal,
-        }
+        self.sensor
+            .step(draft, still, corner, soil, parameters)
+            .map_or_else(|signal| signal, |draft| Draft::Measured(Newton(draft)))
     }
 
     /// Whether the implement is in the soil.
     #[must_use]
     pub const fn is_in_soil(&self) -> bool {
-        self.in_soil
+        self.sensor.is_in_soil()
     }
 
     /// The sum of the pins' forces, unless one of the pins is too noisy.
@@ -70,33 +65,6 @@ impl DraftSignal {
             Err(Trouble::PinNoisy)
         } else {
             Ok(draft)
-        }
-    }
-
-    fn plausible(
-        &mut self,
-        draft: Newton,
-        is_first: bool,
-        moves: bool,
-        parameters: &DraftParameters,
-    ) -> Draft {
-        if is_first {
-            self.filter.reset();
-        }
-        let filtered = Newton(self.filter.step(draft.0, self.corner(moves, parameters)));
-        self.in_soil = if !self.in_soil {
-            filtered > parameters.soil_draft
-        } else {
-            filtered + filtered > parameters.soil_draft
-        };
-        Draft::Measured(filtered)
-    }
-
-    const fn corner(&self, moves: bool, parameters: &DraftParameters) -> MilliHertz {
-        if moves && !self.in_soil {
-            parameters.raised_filter
-        } else {
-            parameters.work_filter
         }
     }
 }

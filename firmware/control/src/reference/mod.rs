@@ -22,12 +22,12 @@ pub mod lag_loop;
 pub mod limits;
 pub mod low_pass;
 pub mod noise_check;
-pub mod plausibility;
 pub mod received;
 pub mod selector;
 pub mod situation;
 pub mod slip_guard;
 pub mod slip_signal;
+pub mod soil_sensor;
 
 use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{Micrometre, MilliDegree, MilliHertz, Millisecond, Newton, PerMille};
@@ -38,10 +38,10 @@ use draft_signal::{Draft, DraftSignal};
 use function_loop::Errors;
 use lag_loop::Gains;
 use limits::{deepest, highest, lowest, reachable};
-use plausibility::Signal;
 use selector::{Active, Choice};
 use slip_guard::SlipGuard;
 use slip_signal::SlipSignal;
+use soil_sensor::Signal;
 
 use crate::operator::engage::Engagement;
 

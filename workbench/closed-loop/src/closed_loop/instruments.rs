@@ -4,7 +4,7 @@ use hitch_plant::{Currents, Reading, SensorNoise};
 use hitch_quantities::Inputs;
 use hitch_quantities::units::{MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliVolt};
 use rand::SeedableRng;
-use rand_distr::{Distribution, Normal};
+use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 /// Resolution of a 12-bit converter for an angle sensor with 0.5 to 4.5 V of 5 V over 110 degrees, degree.
@@ -19,10 +19,7 @@ pub const SUPPLY_V: f64 = 13.8;
 /// A set of instruments with its own random stream.
 pub struct Instruments {
     random: Pcg64Mcg,
-    angle: Normal<f64>,
-    cylinder: Normal<f64>,
-    pump: Normal<f64>,
-    current: Normal<f64>,
+    noise: SensorNoise,
     oil_temperature_c: f64,
 }
 
@@ -30,13 +27,9 @@ impl Instruments {
     /// Instruments with this noise, from `seed`.
     #[must_use]
     pub fn new(noise: &SensorNoise, seed: u64, oil_temperature_c: f64) -> Self {
-        let normal = |sigma| Normal::new(0.0, sigma).expect("a finite constant");
         Self {
             random: Pcg64Mcg::seed_from_u64(seed),
-            angle: normal(noise.rocker_angle_deg),
-            cylinder: normal(noise.cylinder_pressure_bar),
-            pump: normal(noise.pump_pressure_bar),
-            current: normal(noise.current_a),
+            noise: noise.clone(),
             oil_temperature_c,
         }
     }
@@ -48,27 +41,31 @@ impl Instruments {
 
     /// The controller's inputs for the state `truth` and the coil `currents`, with the lever at `lever_deg`.
     pub fn read(&mut self, truth: &Reading, currents: Currents, lever_deg: f64) -> Inputs {
-        let mut ampere = |true_a: f64| {
-            let read_a = quantised(
-                true_a + self.current.sample(&mut self.random),
-                CURRENT_STEP_A,
-            );
-            MilliAmp((read_a * 1e3).round() as i32)
-        };
-        let (lift_current, lower_current) = (ampere(currents.lift_a), ampere(currents.lower_a));
-        let angle_deg = truth.rocker_angle_deg + self.angle.sample(&mut self.random);
-        let cylinder_bar = truth.cylinder_pressure_bar + self.cylinder.sample(&mut self.random);
-        let pump_bar = truth.pump_pressure_bar + self.pump.sample(&mut self.random);
+        let sensors = &self.noise;
         let milli = |value: f64| (value * 1e3).round() as i32;
+        let mut read = |value: f64, sigma: f64, step: f64| {
+            let noise: f64 = StandardNormal.sample(&mut self.random);
+            milli(quantised(value + sigma * noise, step))
+        };
+        let [lift_ma, lower_ma] = [currents.lift_a, currents.lower_a]
+            .map(|true_a| read(true_a, sensors.current_a, CURRENT_STEP_A));
+        let angle = read(
+            truth.rocker_angle_deg,
+            sensors.rocker_angle_deg,
+            ANGLE_STEP_DEG,
+        );
+        let mut bar = |true_bar, sigma| MilliBar(read(true_bar, sigma, PRESSURE_STEP_BAR));
+        let cylinder_pressure = bar(truth.cylinder_pressure_bar, sensors.cylinder_pressure_bar);
+        let pump_pressure = bar(truth.pump_pressure_bar, sensors.pump_pressure_bar);
         Inputs {
             lever: Some(MilliDegree(milli(lever_deg))),
-            rocker_angle: Some(MilliDegree(milli(quantised(angle_deg, ANGLE_STEP_DEG)))),
-            cylinder_pressure: Some(MilliBar(milli(quantised(cylinder_bar, PRESSURE_STEP_BAR)))),
-            pump_pressure: Some(MilliBar(milli(quantised(pump_bar, PRESSURE_STEP_BAR)))),
+            rocker_angle: Some(MilliDegree(angle)),
+            cylinder_pressure: Some(cylinder_pressure),
+            pump_pressure: Some(pump_pressure),
             oil_temperature: Some(MilliCelsius(milli(self.oil_temperature_c))),
             supply: Some(MilliVolt(milli(SUPPLY_V))),
-            lift_current: Some(lift_current),
-            lower_current: Some(lower_current),
+            lift_current: Some(MilliAmp(lift_ma)),
+            lower_current: Some(MilliAmp(lower_ma)),
             ..Inputs::default()
         }
     }

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use axum::extract::{Query, State};
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_closed_loop::driven::{Described, Machine, Orders, wrong_advance};
@@ -17,6 +16,7 @@ use super::loop_source::LoopSource;
 use crate::error::Error;
 use crate::serve::refusal::Refusal;
 use crate::serve::request::{Answer, Known, Of, blocking, find, lock};
+use crate::serve::saving::{TOML, attached};
 
 /// All routes of the closed loop.
 pub fn routes() -> Router<Arc<crate::serve::sessions::Sessions>> {
@@ -144,12 +144,9 @@ async fn calibration(State(sessions): Known, Query(of): Query<Of>) -> Result<Res
     let session = find(&sessions, &of.session)?;
     let models = lock(&session).models();
     let rebuilt = blocking(move || models.rebuilt()).await??;
-    let headers = [
-        (header::CONTENT_TYPE, "application/toml; charset=utf-8"),
-        (
-            header::CONTENT_DISPOSITION,
-            "attachment; filename=\"calibration.toml\"",
-        ),
-    ];
-    Ok((headers, calibration_file::write(&rebuilt)).into_response())
+    Ok(attached(
+        TOML,
+        "calibration.toml",
+        calibration_file::write(&rebuilt),
+    ))
 }

@@ -1,11 +1,11 @@
-//! A figure of a field scenario, with its requirement.
+//! A figure of a scenario, with its requirement.
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A figure of a scenario.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct FieldFigure {
+pub struct ScenarioFigure {
     /// What it is.
     pub name: String,
     /// Its value.
@@ -16,7 +16,7 @@ pub struct FieldFigure {
     pub required: Option<f64>,
 }
 
-impl FieldFigure {
+impl ScenarioFigure {
     /// A figure; `required` is the largest value that meets the requirement.
     #[must_use]
     pub fn new(name: &str, value: f64, unit: &'static str, required: Option<f64>) -> Self {

@@ -1,11 +1,13 @@
-//! Plausibility of the sensors of draft and depth.
+//! What the sensors of draft and depth have in common: plausibility, filter, and whether the implement is in the soil.
 //!
 //! A sample that may be wrong is not used: the signal is [`Signal::Suspect`] until the sensor is plausible again or has been
 //! implausible for `check_time`. It is lost then, until it has been plausible for `healthy_time`.
 
 use hitch_quantities::Trouble;
 use hitch_quantities::calibration::field_parameters::DraftParameters;
-use hitch_quantities::units::{Millisecond, SupplyShare};
+use hitch_quantities::units::{MilliHertz, Millisecond, SupplyShare};
+
+use super::low_pass::LowPass;
 
 /// A quantity in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,27 +41,38 @@ impl<Q: Copy> Signal<Q> {
     }
 }
 
-/// Plausibility from step to step.
+/// A sensor from step to step.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Plausibility {
+pub struct SoilSensor {
+    filter: LowPass,
     implausible_for: Millisecond,
     healthy_for: Millisecond,
     lost: Option<Trouble>,
+    in_soil: bool,
 }
 
-impl Plausibility {
-    /// One step: the quantity of a sample that is used, and whether it is the first one after a loss. `still`: for how long the
-    /// sample has been the same where it should change, and the trouble that this is.
+impl SoilSensor {
+    /// One step: the filtered quantity. `still`: for how long the sample has been the same, and the trouble that this is in the
+    /// soil. The implement `enters` the soil above one filtered quantity and `leaves` it at another.
     pub fn step<Q>(
         &mut self,
-        sample: Result<Q, Trouble>,
+        sample: Result<i32, Trouble>,
         (still, frozen): (Millisecond, Trouble),
+        corner: MilliHertz,
+        [enters, leaves]: [i32; 2],
         parameters: &DraftParameters,
-    ) -> Result<(Q, bool), Signal<Q>> {
+    ) -> Result<i32, Signal<Q>> {
+        let still = if self.in_soil {
+            still
+        } else {
+            Millisecond::ZERO
+        };
         match sample {
-            Ok(quantity) if still < parameters.still_time => {
-                let is_first = self.plausible(parameters).map_err(Signal::Lost)?;
-                Ok((quantity, is_first))
+            Ok(sample) if still < parameters.still_time => {
+                self.plausible(parameters).map_err(Signal::Lost)?;
+                let filtered = self.filter.step(sample, corner);
+                self.in_soil = filtered > if self.in_soil { leaves } else { enters };
+                Ok(filtered)
             }
             Ok(_) => Err(self.implausible(frozen, still >= parameters.frozen_time)),
             Err(trouble) => {
@@ -69,18 +82,25 @@ impl Plausibility {
         }
     }
 
-    /// A plausible sample: whether it is the first that is used after a loss.
-    fn plausible(&mut self, parameters: &DraftParameters) -> Result<bool, Trouble> {
+    /// Whether the implement is in the soil.
+    #[must_use]
+    pub const fn is_in_soil(&self) -> bool {
+        self.in_soil
+    }
+
+    /// A plausible sample; after a loss, the filter begins with the first one that is used.
+    fn plausible(&mut self, parameters: &DraftParameters) -> Result<(), Trouble> {
         self.implausible_for = Millisecond::ZERO;
         let Some(trouble) = self.lost else {
-            return Ok(false);
+            return Ok(());
         };
         self.healthy_for = self.healthy_for.next();
         if self.healthy_for < parameters.healthy_time {
             return Err(trouble);
         }
         self.lost = None;
-        Ok(true)
+        self.filter.reset();
+        Ok(())
     }
 
     fn implausible<Q>(&mut self, trouble: Trouble, for_long: bool) -> Signal<Q> {
