@@ -156,7 +156,7 @@ impl Decoder {
 
     /// The calibration. `None` if the entries make none, or if none of them was known: the defaults alone are no stored
     /// calibration.
-    pub(super) fn finish(self) -> Option<(ValidCalibration, Carried)> {
+    pub(super) fn finish(&self) -> Option<(ValidCalibration, Carried)> {
         if self.found == 0 {
             return None;
         }

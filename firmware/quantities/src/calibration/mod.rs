@@ -153,7 +153,8 @@ impl Calibration {
                 computed,
             });
         }
-        self.checked()
+        self.check()?;
+        Ok(ValidCalibration(self))
     }
 
     /// Seals the block, if everything but the seal is right: the checksum is reckoned only once.
@@ -162,7 +163,9 @@ impl Calibration {
     /// The first thing that is wrong.
     pub fn seal(mut self) -> Result<ValidCalibration, CalibrationError> {
         self.version = CALIBRATION_VERSION;
-        self.sealed().checked()
+        self.checksum = self.computed_checksum();
+        self.check()?;
+        Ok(ValidCalibration(self))
     }
 
     /// The block of these words, sealed if everything but version and seal is right. The checksum is of the words at hand:
@@ -181,18 +184,18 @@ impl Calibration {
         let mut block = Self::from_words(words);
         block.version = CALIBRATION_VERSION;
         block.checksum = digest.value();
-        block.checked()
+        block.check()?;
+        Ok(ValidCalibration(block))
     }
 
-    /// Checks what is in a block that is sealed.
-    fn checked(mut self) -> Result<ValidCalibration, CalibrationError> {
+    /// Checks what is in a block that is sealed. By reference: a block that is handed on is a copy of it on the stack.
+    fn check(&mut self) -> Result<(), CalibrationError> {
         self.check_parameters()?;
         check_valve("lift", &self.lift)?;
         check_valve("lower", &self.lower)?;
         check_linkage(&self.linkage)?;
         self.check_order()?;
-        self.check_angle_lag()?;
-        Ok(ValidCalibration(self))
+        self.check_angle_lag()
     }
 
     /// By the ranges that tools are held to as well.
