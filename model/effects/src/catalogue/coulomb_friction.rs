@@ -7,7 +7,7 @@
 //! of the pressure force for a 76 mm cylinder, and some tenths of a millimetre of deflection.
 
 use hitch_plant::hooks::elements::Bristles;
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind};
 
 use crate::described::Described;
 
@@ -36,7 +36,6 @@ const CHANNELS: &[Channel] = &[
 /// Friction that vanishes at rest.
 pub static SMOOTH: Described = Described {
     id: "coulomb-friction",
-    form: None,
     title: "Coulomb friction at the piston",
     equation: "F = force * tanh(v / 3 mm/s)",
     source: "Simscape cylinder friction; Jelali & Kroll 4.3; 100 to 800 N for seals of a 76 mm cylinder and links",
@@ -44,15 +43,13 @@ pub static SMOOTH: Described = Described {
             lowering of light loads",
     parameters: &[FORCE],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| {
         let force_n = values[0];
         hooks.friction.push(Box::new(move |state, _| {
             force_n * (state.speed_m_s / TRANSITION_SPEED_M_S).tanh()
         }));
     },
+    ..Described::USUAL
 };
 
 /// Longest step that resolves the deflection of the bristles, s.
@@ -93,9 +90,6 @@ pub static BRISTLES: Described = Described {
         },
     ],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| {
         hooks.bristles = Some(Bristles {
             force_n: values[0],
@@ -104,4 +98,5 @@ pub static BRISTLES: Described = Described {
         });
         hooks.limit_step(STEP_S);
     },
+    ..Described::USUAL
 };
