@@ -26,13 +26,6 @@ const FORCE: Parameter = Parameter {
     high: 5000.0,
 };
 
-const CHANNELS: &[Channel] = &[
-    Channel::PumpPressure,
-    Channel::CylinderPressure,
-    Channel::Flow,
-    Channel::RockerAngle,
-];
-
 /// Friction that vanishes at rest.
 pub static SMOOTH: Described = Described {
     id: "coulomb-friction",
@@ -42,7 +35,7 @@ pub static SMOOTH: Described = Described {
     shows: "cylinder pressure steps down from lifting to holding and again to lowering, by the same at every load; slower \
             lowering of light loads",
     parameters: &[FORCE],
-    channels: CHANNELS,
+    channels: &Channel::ALL,
     attach: |values, _, hooks| {
         let force_n = values[0];
         hooks.friction.push(Box::new(move |state, _| {
@@ -89,7 +82,7 @@ pub static BRISTLES: Described = Described {
             high: 8.0,
         },
     ],
-    channels: CHANNELS,
+    channels: &Channel::ALL,
     attach: |values, _, hooks| {
         hooks.bristles = Some(Bristles {
             force_n: values[0],

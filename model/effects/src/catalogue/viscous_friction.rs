@@ -26,13 +26,6 @@ const COEFFICIENT: Parameter = Parameter {
     high: 100000.0,
 };
 
-const CHANNELS: &[Channel] = &[
-    Channel::PumpPressure,
-    Channel::CylinderPressure,
-    Channel::Flow,
-    Channel::RockerAngle,
-];
-
 /// Viscous friction independent of temperature.
 pub static EVEN: Described = Described {
     id: "viscous-friction",
@@ -45,7 +38,7 @@ pub static EVEN: Described = Described {
         low: -100000.0,
         ..COEFFICIENT
     }],
-    channels: CHANNELS,
+    channels: &Channel::ALL,
     attach: |values, conditions, hooks| {
         let declared_n_s_m = match conditions.constants.dynamics {
             Dynamics::Steady => 0.0,
@@ -75,7 +68,7 @@ pub static THICKENING: Described = Described {
             ..Parameter::ratio("exponent")
         },
     ],
-    channels: CHANNELS,
+    channels: &Channel::ALL,
     attach: |values, conditions, hooks| {
         let thickness =
             viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(SPECIFIED_AT_C);
