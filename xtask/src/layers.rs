@@ -59,7 +59,7 @@ const CRATES: [Layers; 12] = [
             &["channel", "units"],
             &["components"],
             &["constants"],
-            &["state"],
+            &["state", "valve"],
             &["hooks"],
             &["model"],
             &["solver"],

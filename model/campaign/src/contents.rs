@@ -7,6 +7,8 @@ use hitch_input::written_unit::spelling;
 pub struct LogColumn {
     /// Its name.
     pub name: String,
+    /// Index of its cell in a row of a text table.
+    pub cell: usize,
     /// Its unit as formulas write it, if the log states one.
     pub unit: Option<String>,
     /// Its comment; empty without one.

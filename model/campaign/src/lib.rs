@@ -21,7 +21,7 @@ mod contents;
 mod csv_log;
 mod cut;
 mod dropout;
-mod file_key;
+pub mod folder;
 mod manifest;
 mod mdf_log;
 mod number_log;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hitch_input::input_error::{InputError, quote};
+use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 use hitch_input::toml_reader::TomlTable;
 use hitch_plant::{Channel, Linkage};
@@ -10,7 +10,7 @@ use hitch_plant::{Channel, Linkage};
 use crate::bus_log::BusSettings;
 use crate::columns::ColumnSettings;
 use crate::cut::Cut;
-use crate::file_key::{file_in, file_name};
+use crate::folder::{check_format, file_in, file_name, folder_name, manifest_of};
 use crate::recorded::{Bench, Campaign, CampaignError, Noise, Run};
 use crate::run_log;
 use crate::run_log::Settings;
@@ -19,8 +19,6 @@ use crate::table::{LONGEST_STEP_S, LogNotes, Table};
 
 /// Key of the files in which a recording continues.
 const THEN: &str = "then";
-/// The supported format version.
-const FORMAT: f64 = 1.0;
 /// Range of loads that the cylinder can hold below the relief pressure, with a margin, kg.
 const LOAD_KG: std::ops::RangeInclusive<f64> = 0.0..=20_000.0;
 /// Range of pressures of hydraulics of this class, bar.
@@ -34,7 +32,7 @@ const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 
 /// Reads the folder of a campaign with a hitch of this linkage.
 pub fn load(dir: &Path, linkage: &Linkage) -> Result<Campaign, CampaignError> {
-    let source = SourceFile::read(&manifest_path(dir)?)?;
+    let source = manifest_of(dir)?;
     read(dir, &source, linkage, LONGEST_STEP_S).map(|(campaign, _)| campaign)
 }
 
@@ -118,36 +116,6 @@ fn synchronous(top: &TomlTable) -> Result<bool, CampaignError> {
             Err(top.error_at("clocks", what, hint))
         }
     }
-}
-
-fn manifest_path(dir: &Path) -> Result<PathBuf, CampaignError> {
-    let hint = "a campaign is a folder with campaign.toml and a log per run";
-    if !dir.exists() {
-        return Err(InputError::of_file(dir, "no such folder", hint));
-    }
-    if !dir.is_dir() {
-        return Err(InputError::of_file(dir, "is not a folder", hint));
-    }
-    let path = dir.join("campaign.toml");
-    if !path.exists() {
-        return Err(InputError::of_file(dir, "contains no campaign.toml", hint));
-    }
-    Ok(path)
-}
-
-fn folder_name(dir: &Path) -> String {
-    let full = dir.canonicalize().unwrap_or_else(|_| dir.to_path_buf());
-    let name = full.file_name().map(|name| name.to_string_lossy());
-    name.map_or_else(|| "campaign".to_owned(), Into::into)
-}
-
-fn check_format(top: &TomlTable<'_>) -> Result<(), CampaignError> {
-    let format = top.required_number("format", f64::MIN..=f64::MAX)?;
-    if format == FORMAT {
-        return Ok(());
-    }
-    let what = format!("format {format} is not known");
-    Err(top.error_at("format", what, "this program reads format = 1"))
 }
 
 fn noise(top: &TomlTable<'_>) -> Result<Noise, CampaignError> {

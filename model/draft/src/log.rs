@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use hitch_campaign::survey::{LogColumn, TextTable, text_table};
-use hitch_input::Unit;
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::naming::offer_names;
 use hitch_input::source_file::SourceFile;
@@ -16,40 +15,22 @@ use crate::block::Sample;
 pub struct Quantity {
     /// Its name, which a column may have.
     pub name: &'static str,
-    /// Its unit in the program, of which other units are converted.
-    unit: &'static str,
-    /// Endings of the project's own column names, each with its unit.
-    own: &'static [(&'static str, &'static str)],
-    /// Range of plausible values in that unit.
+    /// Its unit in the program, then others that may end the name of a column.
+    units: &'static [&'static str],
+    /// Range of plausible values in the first unit.
     range: [f64; 2],
+}
+
+const fn known(name: &'static str, units: &'static [&'static str], range: [f64; 2]) -> Quantity {
+    Quantity { name, units, range }
 }
 
 /// The quantities that a log has to have.
 pub const QUANTITIES: [Quantity; 4] = [
-    Quantity {
-        name: "time",
-        unit: "s",
-        own: &[("s", "s"), ("ms", "ms")],
-        range: [-1e12, 1e12],
-    },
-    Quantity {
-        name: "speed",
-        unit: "m/s",
-        own: &[("m_s", "m/s"), ("km_h", "km/h")],
-        range: [-10.0, 10.0],
-    },
-    Quantity {
-        name: "depth",
-        unit: "m",
-        own: &[("m", "m"), ("cm", "cm"), ("mm", "mm")],
-        range: [-3.0, 1.5],
-    },
-    Quantity {
-        name: "draft",
-        unit: "N",
-        own: &[("n", "N"), ("kn", "kN")],
-        range: [-1e6, 1e6],
-    },
+    known("time", &["s", "ms"], [-1e12, 1e12]),
+    known("speed", &["m/s", "km/h"], [-10.0, 10.0]),
+    known("depth", &["m", "cm", "mm"], [-3.0, 1.5]),
+    known("draft", &["N", "kN"], [-1e6, 1e6]),
 ];
 
 /// The columns that a manifest names for each quantity, in the order of [`QUANTITIES`]; none if the log's own names are used.
@@ -58,12 +39,6 @@ pub const QUANTITIES: [Quantity; 4] = [
 pub struct Mapping {
     /// Names, each with `:unit` behind it if the log states none.
     pub columns: [Vec<String>; 4],
-}
-
-/// A column of a quantity with the size of its unit.
-struct Found<'t> {
-    column: &'t LogColumn,
-    factor: f64,
 }
 
 /// Reads the samples of a log.
@@ -79,20 +54,19 @@ pub fn read(path: &Path, mapping: &Mapping) -> Result<Vec<Sample>, InputError> {
             hint,
         )
     })?;
-    let mut found = Vec::new();
-    for (quantity, names) in QUANTITIES.iter().zip(&mapping.columns) {
-        found.push(columns(&source, &table, quantity, names)?);
-    }
-    let mut samples: Vec<Sample> = Vec::with_capacity(table.rows.len());
-    for (row, byte) in table.rows.iter().enumerate() {
-        let mut values = [0.0; 4];
-        for ((value, quantity), columns) in values.iter_mut().zip(&QUANTITIES).zip(&found) {
-            for Found { column, factor } in columns {
-                let read = column.values.get(row).copied().unwrap_or(f64::NAN) * factor;
-                check(&source, *byte, quantity, column, read)?;
-                *value += read;
+    let mut values = vec![[0.0; 4]; table.rows.len()];
+    for (of, (quantity, names)) in QUANTITIES.iter().zip(&mapping.columns).enumerate() {
+        for (column, factor) in columns(&source, &table, quantity, names)? {
+            for (row, logged) in table.numbers(&source, column)?.iter().enumerate() {
+                let value = logged * factor;
+                check(quantity, column, value)
+                    .map_err(|(what, hint)| table.fault(&source, row, column, what, hint))?;
+                values[row][of] += value;
             }
         }
+    }
+    let mut samples: Vec<Sample> = Vec::with_capacity(values.len());
+    for (values, byte) in values.into_iter().zip(&table.rows) {
         let [time_s, speed_m_s, depth_m, draft_n] = values;
         if samples.last().is_some_and(|last| last.time_s >= time_s) {
             let what = format!("time {time_s} s is not later than that of the row before");
@@ -112,59 +86,47 @@ pub fn read(path: &Path, mapping: &Mapping) -> Result<Vec<Sample>, InputError> {
     Ok(samples)
 }
 
-fn check(
-    source: &SourceFile,
-    byte: usize,
-    quantity: &Quantity,
-    column: &LogColumn,
-    value: f64,
-) -> Result<(), InputError> {
-    let name = quote(&column.name);
-    if !value.is_finite() {
-        let what = format!("{name} has no number in this row");
-        let hint = "delete the row, or give it a number";
-        return Err(source.error_at(byte, what, hint));
-    }
-    let [low, high] = quantity.range;
+fn check(quantity: &Quantity, column: &LogColumn, value: f64) -> Result<(), (String, String)> {
+    let ([low, high], unit) = (quantity.range, quantity.units[0]);
     if (low..=high).contains(&value) {
         return Ok(());
     }
-    let unit = quantity.unit;
+    let name = quote(&column.name);
     let what = format!("{name} is {value} {unit}, which is out of range");
     let hint = format!("the range is {low} to {high} {unit}; check the unit in the header");
-    Err(source.error_at(byte, what, hint))
+    Err((what, hint))
 }
 
-/// The columns of a quantity.
+/// The columns of a quantity, each with the factor to its unit in the program.
 fn columns<'t>(
     source: &SourceFile,
     table: &'t TextTable,
     quantity: &Quantity,
     names: &[String],
-) -> Result<Vec<Found<'t>>, InputError> {
+) -> Result<Vec<(&'t LogColumn, f64)>, InputError> {
     let known: Vec<&str> = table
         .columns
         .iter()
         .map(|column| column.name.as_str())
         .collect();
     let fault = |what: String, hint: String| source.error_at(table.header, what, hint);
+    let with_factor = |column: &'t LogColumn, unit: &str| match factor(quantity, column, unit) {
+        Ok(factor) => Ok((column, factor)),
+        Err((what, hint)) => Err(fault(what, hint)),
+    };
     if names.is_empty() {
-        let mut own = table.columns.iter().filter_map(|column| {
-            let unit = own_unit(quantity, column)?;
-            Some((column, unit))
-        });
-        let (column, unit) = own.next().ok_or_else(|| {
-            let (ending, _) = quantity.own[0];
+        let mut own = table.columns.iter();
+        let own = own.find_map(|column| Some((column, own_unit(quantity, column)?)));
+        let (column, unit) = own.ok_or_else(|| {
             let what = format!("the header has no column of the {}", quantity.name);
+            let unit = quantity.units[0];
             let hint = format!(
-                "name it {0}_{ending}, or {0} with its unit in brackets, or assign one under [columns]: {0} = \"Name:{1}\"",
-                quantity.name, quantity.unit
+                "name it {0}_{1}, or {0} with its unit in brackets, or assign one under [columns]: {0} = \"Name:{unit}\"",
+                quantity.name, ending(unit)
             );
             fault(what, hint)
         })?;
-        return Ok(vec![
-            found(quantity, column, unit).map_err(|(what, hint)| fault(what, hint))?,
-        ]);
+        return Ok(vec![with_factor(column, unit)?]);
     }
     let mut all = Vec::new();
     for written in names {
@@ -182,8 +144,7 @@ fn columns<'t>(
             );
             return Err(fault(what, offer_names(written, &known)));
         };
-        let unit = unit.unwrap_or_default();
-        all.push(found(quantity, column, unit).map_err(|(what, hint)| fault(what, hint))?);
+        all.push(with_factor(column, unit.unwrap_or_default())?);
     }
     Ok(all)
 }
@@ -194,35 +155,30 @@ fn own_unit<'t>(quantity: &Quantity, column: &'t LogColumn) -> Option<&'t str> {
     if name == quantity.name {
         return Some(column.unit.as_deref().unwrap_or_default());
     }
-    let ending = name.strip_prefix(quantity.name)?.strip_prefix('_')?;
-    let mut own = quantity.own.iter();
-    own.find(|(known, _)| *known == ending)
-        .map(|(_, unit)| *unit)
+    let of_name = name.strip_prefix(quantity.name)?.strip_prefix('_')?;
+    let mut units = quantity.units.iter().copied();
+    units.find(|unit| ending(unit) == of_name)
 }
 
-fn found<'t>(
-    quantity: &Quantity,
-    column: &'t LogColumn,
-    unit: &str,
-) -> Result<Found<'t>, (String, String)> {
-    let name = quote(&column.name);
+/// A unit as it ends the project's own names of columns.
+fn ending(unit: &str) -> String {
+    unit.to_lowercase().replace('/', "_")
+}
+
+/// From the unit of a column to that of the program.
+fn factor(quantity: &Quantity, column: &LogColumn, unit: &str) -> Result<f64, (String, String)> {
+    let usual = quantity.units[0];
     if unit.is_empty() {
-        let what = format!("{name} has no unit");
-        let hint = format!(
-            "write it in brackets behind the name, for example [{}]",
-            quantity.unit
-        );
+        let what = format!("{} has no unit", quote(&column.name));
+        let hint = format!("write it in brackets behind the name, for example [{usual}]");
         return Err((what, hint));
     }
-    let wanted = Unit::parse(quantity.unit).map_err(|fault| (fault.to_string(), String::new()))?;
-    match parsed(spelling(unit)).filter(|unit| unit.dimension == wanted.dimension) {
-        Some(unit) => Ok(Found {
-            column,
-            factor: unit.si / wanted.si,
-        }),
+    let units = parsed(spelling(unit)).zip(parsed(usual));
+    match units.filter(|(own, wanted)| own.dimension == wanted.dimension) {
+        Some((own, wanted)) => Ok(own.si / wanted.si),
         None => {
             let what = format!("{} is no unit of the {}", quote(unit), quantity.name);
-            Err((what, format!("use for example {}", quantity.unit)))
+            Err((what, format!("use for example {usual}")))
         }
     }
 }

@@ -21,10 +21,10 @@
 
 use std::path::Path;
 
+use hitch_campaign::folder::{check_format, file_in, file_name, folder_name, manifest_of};
 use hitch_field::draft::Texture;
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::naming::offer_names;
-use hitch_input::source_file::SourceFile;
 use hitch_input::toml_reader::TomlTable;
 
 use crate::block::Run;
@@ -55,15 +55,7 @@ impl Campaign {
     /// # Errors
     /// The first fault, with file, line and column.
     pub fn load(dir: &Path) -> Result<Self, InputError> {
-        let hint = "a draft campaign is a folder with campaign.toml and a log per run";
-        if !dir.is_dir() {
-            return Err(InputError::of_file(dir, "no such folder", hint));
-        }
-        let path = dir.join("campaign.toml");
-        if !path.is_file() {
-            return Err(InputError::of_file(dir, "contains no campaign.toml", hint));
-        }
-        let source = SourceFile::read(&path)?;
+        let source = manifest_of(dir)?;
         let top = TomlTable::parse(&source)?;
         top.only(&[
             "format",
@@ -74,16 +66,10 @@ impl Campaign {
             "columns",
             "run",
         ])?;
-        if top.required_number("format", f64::MIN..=f64::MAX)? != 1.0 {
-            let what = "the format is not known";
-            return Err(top.error_at("format", what, "this program reads format = 1"));
-        }
-        let folder = dir
-            .file_name()
-            .map(|name| name.to_string_lossy().into_owned());
-        let name = top.text("name")?.map(str::to_owned).or(folder);
+        check_format(&top)?;
+        let name = top.text("name")?.map(str::to_owned);
         Ok(Self {
-            name: name.unwrap_or_else(|| "campaign".to_owned()),
+            name: name.unwrap_or_else(|| folder_name(dir)),
             machine: machine(&top)?,
             runs: runs(dir, &top)?,
         })
@@ -162,13 +148,8 @@ fn runs(dir: &Path, top: &TomlTable<'_>) -> Result<Vec<Run>, InputError> {
     let mut lanes: Vec<String> = Vec::new();
     for table in &tables {
         table.only(&["file", "lane", "columns"])?;
-        let file = table.required_text("file")?;
-        let path = dir.join(file);
-        if !path.is_file() {
-            let what = format!("the folder contains no file {}", quote(file));
-            let hint = "correct the name, or delete this [[run]] block";
-            return Err(table.error_at("file", what, hint));
-        }
+        let file = file_name(table, "file")?;
+        let path = file_in(dir, table, "file")?;
         if runs.iter().any(|run| run.name == file) {
             let what = format!("{} is listed twice", quote(file));
             return Err(table.error_at("file", what, "delete one of the two [[run]] blocks"));

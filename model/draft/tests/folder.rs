@@ -78,12 +78,12 @@ fn a_fault_says_where_it_is_and_how_to_mend_it() {
         (
             manifest.clone(),
             "time_s,speed_m_s,depth_cm,draft_kn\n0,2,20,15\n1,2,x,16\n2,2,20,16\n",
-            "a.csv:3:1: \"depth_cm\" has no number in this row",
+            "a.csv:3:5: the cell of \"depth_cm\" is not a number",
         ),
         (
             manifest.clone(),
             "time_s,speed_m_s,depth_m,draft_kn\n0,2,0.2,15\n1,2,20,16\n",
-            "a.csv:3:1: \"depth_m\" is 20 m, which is out of range",
+            "a.csv:3:5: \"depth_m\" is 20 m, which is out of range",
         ),
         (
             manifest.clone(),

@@ -19,6 +19,24 @@ pub struct Described {
     pub(crate) attach: fn(&[f64], RunConditions<'_>, &mut EffectHooks),
 }
 
+impl Described {
+    /// An effect without texts and parameters, in any model, with a smooth response.
+    pub(crate) const USUAL: Self = Self {
+        id: "",
+        form: None,
+        title: "",
+        equation: "",
+        source: "",
+        shows: "",
+        parameters: &[],
+        channels: &Channel::ALL,
+        needs: None,
+        size_response: SizeResponse::Smooth,
+        refines: false,
+        attach: |_, _, _| {},
+    };
+}
+
 impl Effect for Described {
     fn id(&self) -> &'static str {
         self.id

@@ -1,7 +1,7 @@
 //! Columns of numbers from a text table of any dialect, with the units in its header.
 
 use hitch_campaign::survey::{LogColumn, text_table};
-use hitch_input::input_error::{InputError, quote};
+use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_input::written_unit::{parsed, spelling};
 
@@ -48,12 +48,8 @@ impl<const N: usize> NumberTable<N> {
                 let hint = format!("write the unit in the header, as in {example}");
                 source.error_at(table.header, what, hint)
             })?;
-            if let Some(row) = found.values.iter().position(|value| value.is_nan()) {
-                let what = format!("the cell of {} is not a number", quote(&found.name));
-                let hint = "write a number, or delete the row";
-                return Err(source.error_at(table.rows[row], what, hint));
-            }
-            *values = found.values.iter().map(|value| si * value).collect();
+            let logged = table.numbers(source, found)?.iter();
+            *values = logged.map(|value| si * value).collect();
         }
         Ok(Self {
             columns,

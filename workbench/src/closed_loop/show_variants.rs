@@ -28,12 +28,43 @@ impl Sides {
         }
     }
 
-    fn row(
-        &mut self,
-        first: impl IntoIterator<Item = String>,
-        cells: impl IntoIterator<Item = String>,
-    ) {
-        self.rows.push(first.into_iter().chain(cells).collect());
+    /// A row for each figure of the summaries of the runs.
+    fn of_figures<Run, Of>(
+        runs: Named<'_, Run>,
+        figures: &[Figure<Of>],
+        summary: fn(&Run) -> Of,
+    ) -> Self {
+        let mut sides = Self::new(&["figure"], runs);
+        for (name, of, digits) in figures {
+            let cells = runs
+                .iter()
+                .map(|(_, run)| known(of(&summary(run)), *digits));
+            sides
+                .rows
+                .push([(*name).to_owned()].into_iter().chain(cells).collect());
+        }
+        sides
+    }
+
+    /// A row for each result of the runs: its name with its load, kg, and oil temperature, C, and a cell for each run.
+    fn of_results<Run, Of>(
+        kind: &str,
+        runs: Named<'_, Run>,
+        results: fn(&Run) -> &[Of],
+        row: impl Fn(&Of) -> (String, f64, f64),
+        cell: impl Fn(&Of) -> String,
+    ) -> Self {
+        let mut sides = Self::new(&[kind, "load, kg", "oil, C"], runs);
+        let first = runs.first().map_or(&[][..], |(_, run)| results(run));
+        for (index, result) in first.iter().enumerate() {
+            let (name, load_kg, oil_c) = row(result);
+            let conditions = [name, format!("{load_kg:.0}"), format!("{oil_c:.0}")];
+            let cells = runs.iter().map(|(_, run)| cell(&results(run)[index]));
+            sides
+                .rows
+                .push(conditions.into_iter().chain(cells).collect());
+        }
+        sides
     }
 
     fn text(&self) -> String {
@@ -89,33 +120,19 @@ const PRESSES: [Figure<PressSummary>; 4] = [
 /// The figures of all moves, by calibration.
 #[must_use]
 pub fn figures(runs: Named<'_, LoopRun>) -> Sides {
-    let mut sides = Sides::new(&["figure"], runs);
-    for (name, of, digits) in MOVES {
-        sides.row(
-            [name.to_owned()],
-            runs.iter().map(|(_, run)| known(of(&run.summary), digits)),
-        );
-    }
-    sides
+    Sides::of_figures(runs, &MOVES, |run| run.summary)
 }
 
 /// The figures of all presses, by calibration.
 #[must_use]
 pub fn press_figures(runs: Named<'_, PressRun>) -> Sides {
-    let mut sides = Sides::new(&["figure"], runs);
-    for (name, of, digits) in PRESSES {
-        sides.row(
-            [name.to_owned()],
-            runs.iter().map(|(_, run)| known(of(&run.summary), digits)),
-        );
-    }
-    sides
+    Sides::of_figures(runs, &PRESSES, |run| run.summary)
 }
 
 /// Time ratio and overshoot of each move, by calibration.
 #[must_use]
 pub fn moves(runs: Named<'_, LoopRun>) -> Sides {
-    let mut sides = Sides::new(&["move, deg", "load, kg", "oil, C"], runs);
+    let row = |result: &MoveResult| (name(result), result.load_kg, result.oil_temperature_c);
     let cell = |result: &MoveResult| {
         if result.arrived {
             format!("{} / {:.2}", known(result.ratio, 2), result.overshoot_deg)
@@ -123,50 +140,21 @@ pub fn moves(runs: Named<'_, LoopRun>) -> Sides {
             "never arrives".to_owned()
         }
     };
-    for (index, result) in runs
-        .first()
-        .map_or(&[][..], |(_, run)| &run.results)
-        .iter()
-        .enumerate()
-    {
-        let conditions = [
-            name(result),
-            format!("{:.0}", result.load_kg),
-            format!("{:.0}", result.oil_temperature_c),
-        ];
-        sides.row(
-            conditions,
-            runs.iter().map(|(_, run)| cell(&run.results[index])),
-        );
-    }
-    sides
+    Sides::of_results("move, deg", runs, |run| &run.results, row, cell)
 }
 
 /// Start delay and overshoot of each press, by calibration.
 #[must_use]
 pub fn presses(runs: Named<'_, PressRun>) -> Sides {
-    let mut sides = Sides::new(&["button, deg/s", "load, kg", "oil, C"], runs);
+    let row = |press: &PressResult| {
+        let speed = format!("{:+.1}", press.rate_deg_per_s);
+        (speed, press.load_kg, press.oil_temperature_c)
+    };
     let cell = |press: &PressResult| {
         let start = known(press.start_delay_s, 2);
         format!("{start} / {:.1}", 100.0 * press.speed_overshoot)
     };
-    for (index, press) in runs
-        .first()
-        .map_or(&[][..], |(_, run)| &run.results)
-        .iter()
-        .enumerate()
-    {
-        let conditions = [
-            format!("{:+.1}", press.rate_deg_per_s),
-            format!("{:.0}", press.load_kg),
-            format!("{:.0}", press.oil_temperature_c),
-        ];
-        sides.row(
-            conditions,
-            runs.iter().map(|(_, run)| cell(&run.results[index])),
-        );
-    }
-    sides
+    Sides::of_results("button, deg/s", runs, |run| &run.results, row, cell)
 }
 
 /// Meaning of the cells of [`moves`], and of [`presses`].

@@ -114,7 +114,8 @@ impl Trial {
     }
 
     /// Searches from `base` with at most `trials` candidates. Values named in `fixed` (as in `position.creep_speed`) are
-    /// not changed. `tell` as in [`search()`].
+    /// not changed. `tell` is called after each candidate with their number so far and the best cost; the search ends with its
+    /// best so far when it answers `Break`.
     #[must_use]
     pub fn search(
         &self,

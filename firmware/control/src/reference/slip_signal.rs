@@ -204,15 +204,17 @@ mod tests {
         steps: i32,
         speeds: impl Fn(i32) -> [i32; 2],
     ) -> Result<Option<PerMille>, Trouble> {
-        (0..steps).fold(Ok(None), |_, step| {
+        let mut slip = Ok(None);
+        for step in 0..steps {
             let [ground, wheel] = speeds(step).map(MillimetrePerSecond);
             let inputs = Inputs {
                 ground_speed: Some(ground),
                 wheel_speed: Some(wheel),
                 ..Inputs::default()
             };
-            signal.step(&inputs, true, &PARAMETERS)
-        })
+            slip = signal.step(&inputs, true, &PARAMETERS);
+        }
+        slip
     }
 
     #[test]

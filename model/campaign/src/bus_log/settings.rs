@@ -21,7 +21,7 @@ use hitch_plant::Channel;
 
 use crate::bus_log::description::{Description, Fault};
 use crate::bus_log::listener::{Listener, Message, Sampled};
-use crate::file_key::file_in;
+use crate::folder::file_in;
 use crate::recorded::CampaignError;
 use crate::run_columns::{COLUMNS, Column, LIFT, LOWER, TIME, column};
 

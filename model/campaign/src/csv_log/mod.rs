@@ -10,6 +10,7 @@ pub mod text_rows;
 
 use std::sync::Arc;
 
+use hitch_input::input_error::{InputError, quote};
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 use layout::Layout;
@@ -18,7 +19,7 @@ use text_rows::Header;
 use crate::columns::{ColumnSettings, offer_columns};
 use crate::contents::{LogColumn, Survey};
 use crate::recorded::CampaignError;
-use crate::table::Table;
+use crate::table::{Table, cell_error};
 
 /// Reads a table for a hitch with this linkage; `settings` map its columns unless it has the project's own header.
 ///
@@ -81,8 +82,41 @@ pub struct TextTable {
     pub header: usize,
     /// Byte offset of each row in the text.
     pub rows: Vec<usize>,
+    /// Separator of the cells.
+    mark: char,
     /// What was assumed about its shape and times, one line each.
     pub notes: Vec<String>,
+}
+
+impl TextTable {
+    /// The numbers of a column, as logged.
+    ///
+    /// # Errors
+    /// A cell is not a number.
+    pub fn numbers<'t>(
+        &self,
+        source: &SourceFile,
+        column: &'t LogColumn,
+    ) -> Result<&'t [f64], InputError> {
+        let Some(row) = column.values.iter().position(|value| value.is_nan()) else {
+            return Ok(&column.values);
+        };
+        let what = format!("the cell of {} is not a number", quote(&column.name));
+        let hint = "write a number, or delete the row";
+        Err(self.fault(source, row, column, what, hint))
+    }
+
+    /// A fault of the cell of a column.
+    pub fn fault(
+        &self,
+        source: &SourceFile,
+        row: usize,
+        column: &LogColumn,
+        what: String,
+        hint: impl Into<String>,
+    ) -> InputError {
+        cell_error(source, self.rows[row], (column.cell, self.mark), what, hint)
+    }
 }
 
 /// Reads the columns of a table, with the numbers of at most this many rows; `None` if the text is not a table. Rows
@@ -122,6 +156,7 @@ pub fn text_table(source: &SourceFile) -> Result<Option<TextTable>, CampaignErro
         lines => notes.push(format!("{lines} lines below the samples are left out")),
     }
     for (index, base) in layout.bases.iter().enumerate() {
+        columns[index].cell = layout.cell(index);
         columns[index].times = base.map(|base| layout.header.cells[base].name.clone());
     }
     columns.retain(|column| !column.name.is_empty());
@@ -130,6 +165,7 @@ pub fn text_table(source: &SourceFile) -> Result<Option<TextTable>, CampaignErro
         columns,
         header,
         rows,
+        mark: layout.header.mark.into(),
         notes,
     }))
 }

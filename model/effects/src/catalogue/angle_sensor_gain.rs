@@ -4,14 +4,13 @@
 //! supply.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
-use hitch_plant::{Channel, Parameter, ParameterKind, Reading, SizeResponse};
+use hitch_plant::{Channel, Parameter, Reading};
 
 use crate::described::Described;
 
 /// Gain error of the rocker angle sensor.
 pub static ANGLE_SENSOR_GAIN: Described = Described {
     id: "angle-sensor-gain",
-    form: None,
     title: "Gain error of the rocker angle sensor",
     equation: "y = (1 + gain) angle",
     source: "hall angle sensors, +-0.5 to 1 % of full scale; a ratiometric sensor on a wrong supply \
@@ -19,21 +18,15 @@ pub static ANGLE_SENSOR_GAIN: Described = Described {
     shows: "the angle changes too much or too little for the oil that flowed, lifting and lowering \
          alike; easily taken for a wrong stroke",
     parameters: &[Parameter {
-        name: "gain",
-        unit: "",
-        kind: ParameterKind::Ratio,
-        key: "gain",
         meaning: "relative error of the angle",
-        null: 0.0,
         typical: 0.02,
         low: -0.3,
         high: 0.3,
+        ..Parameter::ratio("gain")
     }],
     channels: &[Channel::RockerAngle],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach,
+    ..Described::USUAL
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 use hitch_plant::components::lag::Lag;
 use hitch_plant::hooks::effect_hooks::{EffectHooks, SensorStage};
-use hitch_plant::{Channel, Parameter, ParameterKind, Reading, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind, Reading};
 
 use crate::described::Described;
 
@@ -21,7 +21,6 @@ const STEP_S: f64 = 0.005;
 /// A sensor with a filter.
 pub static FILTERING: Described = Described {
     id: "angle-sensor-lag",
-    form: None,
     title: "Lag of the rocker angle sensor",
     equation: "tau y' + y = angle",
     source: "first-order sensor or input filter; 2 to 10 ms for hall sensors, up to 0.2 s with \
@@ -40,10 +39,8 @@ pub static FILTERING: Described = Described {
         high: 2.0,
     }],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| attach(values[0], 0.0, hooks),
+    ..Described::USUAL
 };
 
 /// A sensor with a filter and a dead time.
@@ -68,25 +65,19 @@ pub static DELAYED: Described = Described {
             high: 2.0,
         },
         Parameter {
-            name: "dead",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "dead",
             meaning: "share of it that is dead time",
-            null: 0.0,
             typical: 0.5,
             low: 0.0,
             high: 1.0,
+            ..Parameter::ratio("dead")
         },
     ],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| {
         let dead_s = values[0] * values[1];
         attach(values[0] - dead_s, dead_s, hooks);
     },
+    ..Described::USUAL
 };
 
 fn attach(time_constant_s: f64, dead_s: f64, hooks: &mut EffectHooks) {

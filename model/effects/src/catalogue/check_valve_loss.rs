@@ -9,7 +9,7 @@
 
 use hitch_plant::hooks::effect_hooks::EffectHooks;
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind};
 
 use crate::described::Described;
 
@@ -29,21 +29,17 @@ const LOSS: Parameter = Parameter {
 };
 
 const STEADY: Parameter = Parameter {
-    name: "steady",
-    unit: "",
-    kind: ParameterKind::Ratio,
-    key: "steady",
     meaning: "share of it that is independent of the flow",
     null: 0.5,
     typical: 0.0,
     low: 0.0,
     high: 1.0,
+    ..Parameter::ratio("steady")
 };
 
 /// Pressure loss of a check valve with a throttling seat.
 pub static THROTTLING: Described = Described {
     id: "check-valve-loss",
-    form: None,
     title: "Pressure loss of the check valve",
     equation: "dp_orifice = p_P - p_C - p_crack - loss [steady + (1 - steady) (Q / 40 l/min)^2]; Q = \
          Q_table(I) sqrt(dp_orifice / dp_ref)",
@@ -53,14 +49,12 @@ pub static THROTTLING: Described = Described {
          does not change",
     parameters: &[LOSS, STEADY],
     channels: &[Channel::Flow, Channel::RockerAngle],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| {
         let varying_pa = stiffened(values, hooks);
         let rated_m3_s = m3_s_from_lpm(RATED_LPM);
         hooks.check_valve.turbulent_pa_s2_m6 += varying_pa / (rated_m3_s * rated_m3_s);
     },
+    ..Described::USUAL
 };
 
 /// Pressure loss of a check valve whose poppet opens against its spring.

@@ -8,7 +8,7 @@
 //! sees the changes of the cylinder pressure, which damps its ringing.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind};
 
 use crate::described::Described;
 
@@ -33,21 +33,16 @@ const SLOPE: Parameter = Parameter {
 };
 
 const FLOW: Parameter = Parameter {
-    name: "flow",
-    unit: "",
-    kind: ParameterKind::Ratio,
-    key: "flow",
     meaning: "share of the margin lost from zero lift flow to the pump's full flow",
-    null: 0.0,
     typical: 0.1,
     low: 0.0,
     high: 0.3,
+    ..Parameter::ratio("flow")
 };
 
 /// Droop with the load pressure.
 pub static WITH_LOAD: Described = Described {
     id: "compensator-droop",
-    form: None,
     title: "Droop of the pressure compensator",
     equation: "p_P - p_C = margin - slope p_C; Q = Q_table(I) sqrt((p_P - p_C - p_crack) / dp_ref)",
     source: "spool force balance of a three-way compensator; up to 0.02 bar/bar either way",
@@ -55,10 +50,8 @@ pub static WITH_LOAD: Described = Described {
          over the load",
     parameters: &[SLOPE],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| fall_with_load(values[0], hooks),
+    ..Described::USUAL
 };
 
 /// Droop with the load pressure and the flow.
@@ -79,13 +72,11 @@ pub static WITH_FLOW: Described = Described {
         },
     ],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, conditions, hooks| {
         fall_with_flow(values[0], conditions, hooks);
         fall_with_load(values[1], hooks);
     },
+    ..Described::USUAL
 };
 
 /// Droop of a lagging compensator.
@@ -119,8 +110,6 @@ pub static LAGGING: Described = Described {
         },
     ],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
     refines: true,
     attach: |values, conditions, hooks| {
         if values[0] >= SHORTEST_LAG_S {
@@ -130,6 +119,7 @@ pub static LAGGING: Described = Described {
         fall_with_load(values[1], hooks);
         fall_with_flow(values[2], conditions, hooks);
     },
+    ..Described::USUAL
 };
 
 fn fall_with_flow(

@@ -8,7 +8,7 @@
 
 use hitch_plant::hooks::effect_hooks::EffectHooks;
 use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind};
 
 use crate::described::Described;
 
@@ -31,7 +31,6 @@ const EXCESS: Parameter = Parameter {
 /// Another preload of the spring: margin and idle pressure change by the same amount.
 pub static PRELOAD: Described = Described {
     id: "compensator-margin",
-    form: None,
     title: "Deviation of the compensator margin",
     equation: "p_P - p_C = margin + excess; p_idle = p_0 + excess; Q = Q_table(I) sqrt((p_P - p_C - p_crack) / dp_ref)",
     source: "preload of the compensator's spring: 10 to 30 % off the data sheet",
@@ -39,10 +38,8 @@ pub static PRELOAD: Described = Described {
          flow with it; without a pump pressure it is the lift valve's flow scale",
     parameters: &[EXCESS],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| exceed(values[0], values[0], hooks),
+    ..Described::USUAL
 };
 
 /// Margin and idle pressure change by different amounts.
@@ -65,10 +62,8 @@ pub static BYPASS: Described = Described {
         },
     ],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| exceed(values[0], values[1], hooks),
+    ..Described::USUAL
 };
 
 fn exceed(margin_bar: f64, idle_bar: f64, hooks: &mut EffectHooks) {

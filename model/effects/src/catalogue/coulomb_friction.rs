@@ -7,7 +7,7 @@
 //! of the pressure force for a 76 mm cylinder, and some tenths of a millimetre of deflection.
 
 use hitch_plant::hooks::elements::Bristles;
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind};
 
 use crate::described::Described;
 
@@ -26,33 +26,23 @@ const FORCE: Parameter = Parameter {
     high: 5000.0,
 };
 
-const CHANNELS: &[Channel] = &[
-    Channel::PumpPressure,
-    Channel::CylinderPressure,
-    Channel::Flow,
-    Channel::RockerAngle,
-];
-
 /// Friction that vanishes at rest.
 pub static SMOOTH: Described = Described {
     id: "coulomb-friction",
-    form: None,
     title: "Coulomb friction at the piston",
     equation: "F = force * tanh(v / 3 mm/s)",
     source: "Simscape cylinder friction; Jelali & Kroll 4.3; 100 to 800 N for seals of a 76 mm cylinder and links",
     shows: "cylinder pressure steps down from lifting to holding and again to lowering, by the same at every load; slower \
             lowering of light loads",
     parameters: &[FORCE],
-    channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
+    channels: &Channel::ALL,
     attach: |values, _, hooks| {
         let force_n = values[0];
         hooks.friction.push(Box::new(move |state, _| {
             force_n * (state.speed_m_s / TRANSITION_SPEED_M_S).tanh()
         }));
     },
+    ..Described::USUAL
 };
 
 /// Longest step that resolves the deflection of the bristles, s.
@@ -92,10 +82,7 @@ pub static BRISTLES: Described = Described {
             high: 8.0,
         },
     ],
-    channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
+    channels: &Channel::ALL,
     attach: |values, _, hooks| {
         hooks.bristles = Some(Bristles {
             force_n: values[0],
@@ -104,4 +91,5 @@ pub static BRISTLES: Described = Described {
         });
         hooks.limit_step(STEP_S);
     },
+    ..Described::USUAL
 };

@@ -5,7 +5,7 @@
 //! change of state is between isothermal, n = 1, and adiabatic, n = 1.4.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
-use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Dynamics, Parameter};
 
 use crate::described::Described;
 
@@ -17,7 +17,6 @@ const LOWEST_PA: f64 = 2e4;
 /// Entrained air in the oil.
 pub static ENTRAINED_AIR: Described = Described {
     id: "entrained-air",
-    form: None,
     title: "Entrained air in the oil",
     equation: "E = E_l [1 + a (pa/(pa+p))^(1/n)] / [1 + a pa^(1/n) E_l / (n (pa+p)^((n+1)/n))], a = \
          share / (1 - share)",
@@ -27,33 +26,25 @@ pub static ENTRAINED_AIR: Described = Described {
          lighter the load",
     parameters: &[
         Parameter {
-            name: "share",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "share",
             meaning: "volume of air at atmospheric pressure relative to the whole volume",
-            null: 0.0,
             typical: 0.01,
             low: 0.0,
             high: 0.2,
+            ..Parameter::ratio("share")
         },
         Parameter {
-            name: "polytropic",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "polytropic",
             meaning: "polytropic exponent n of the air",
             null: 1.0,
             typical: 1.2,
             low: 1.0,
             high: 1.4,
+            ..Parameter::ratio("polytropic")
         },
     ],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach,
+    ..Described::USUAL
 };
 
 fn attach(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {

@@ -8,14 +8,13 @@
 //! valve's drop constant, so its flow force does not show.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, Law, RunConditions};
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
 /// Flow force on the lowering spool, as a factor on the flow.
 pub static ON_FLOW: Described = Described {
     id: "flow-force",
-    form: None,
     title: "Flow force on the lowering spool",
     equation: "Q = Q_table(I) sqrt(dp/dp_ref) (1 + s) / (1 + s dp/dp_ref), dp_ref: that of the valve's curve",
     source: "Merritt 5.2: F = 2 Cd Cv A dp cos 69 deg; springs of 8 to 20 N/mm give 0.12 to 0.30 at \
@@ -23,21 +22,15 @@ pub static ON_FLOW: Described = Described {
     shows: "lowering flow increases less than with the square root of the pressure: light loads sink \
          faster and heavy ones slower than by the table",
     parameters: &[Parameter {
-        name: "ratio",
-        unit: "",
-        kind: ParameterKind::Ratio,
-        key: "ratio",
         meaning: "flow force over spring force at the reference drop",
-        null: 0.0,
         typical: 0.2,
         low: 0.0,
         high: 3.0,
+        ..Parameter::ratio("ratio")
     }],
     channels: &[Channel::Flow, Channel::RockerAngle],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: attach_to_flow,
+    ..Described::USUAL
 };
 
 /// Flow force on the lowering spool, as a factor on its travel.

@@ -5,32 +5,24 @@
 //! edge the deviation depends on the opening: the scale increases linearly with it.
 
 use hitch_plant::hooks::elements::FlowFactor;
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
 const SCALE: Parameter = Parameter {
-    name: "scale",
-    unit: "",
-    kind: ParameterKind::Ratio,
-    key: "scale",
     meaning: "relative change of the flow, at half the largest",
-    null: 0.0,
     typical: 0.05,
     low: -0.5,
     high: 0.5,
+    ..Parameter::ratio("scale")
 };
 
 const GROWTH: Parameter = Parameter {
-    name: "growth",
-    unit: "",
-    kind: ParameterKind::Ratio,
-    key: "growth",
     meaning: "relative growth of the scale from half to the largest flow",
-    null: 0.0,
     typical: 0.3,
     low: -1.0,
     high: 1.0,
+    ..Parameter::ratio("growth")
 };
 
 const CHANNELS: &[Channel] = &[Channel::Flow, Channel::RockerAngle];
@@ -41,7 +33,6 @@ const SOURCE: &str =
 /// Flow scale of the lift valve.
 pub static LIFT: Described = Described {
     id: "lift-flow-scale",
-    form: None,
     title: "Scaled flow of the lift valve",
     equation: "Q = (1 + scale) Q_table(I)",
     source: SOURCE,
@@ -49,10 +40,8 @@ pub static LIFT: Described = Described {
             compensator, another discharge coefficient or a stiffer spring of the check valve",
     parameters: &[SCALE],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| scale(&mut hooks.lift_flow_factor, values[0], 0.0),
+    ..Described::USUAL
 };
 
 /// Flow scale of the lift valve that increases with its opening.
@@ -70,17 +59,14 @@ pub static LIFT_UNEVEN: Described = Described {
 /// Flow scale of the lowering valve.
 pub static LOWERING: Described = Described {
     id: "lower-flow-scale",
-    form: None,
     title: "Scaled flow of the lowering valve",
     equation: "Q = (1 + scale) Q_table(I)",
     source: SOURCE,
     shows: "lowering at every current and load by the same factor: flow and speed",
     parameters: &[SCALE],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| scale(&mut hooks.lower_flow_factor, values[0], 0.0),
+    ..Described::USUAL
 };
 
 /// Flow scale of the lowering valve that increases with its opening.

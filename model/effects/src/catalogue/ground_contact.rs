@@ -46,22 +46,20 @@ const CHANNELS: &[Channel] = &[
 /// Contact with ground of low damping.
 pub static SPRINGY: Described = Described {
     id: "ground-contact",
-    form: None,
     title: "Contact with the ground",
     equation: "F = stiffness (h_ground - h), upwards; h_ground = lowest point of the stroke + height",
     source: "Bekker with exponent one; floor 1e6 to 1e7 N/m, soil 5e4 to 5e5 N/m",
     shows: "lowering ends early and the cylinder pressure falls to zero at constant angle",
     parameters: &[HEIGHT, STIFFNESS],
     channels: CHANNELS,
-    needs: None,
     size_response: SizeResponse::Located,
-    refines: false,
     attach: |values, conditions, hooks| {
         hooks.ground = Some(Ground {
             damping_s_m: DAMPING_S_M,
             ..ground(values, conditions)
         });
     },
+    ..Described::USUAL
 };
 
 /// Contact with ground with viscous damping.

@@ -6,7 +6,7 @@
 
 use hitch_plant::hooks::elements::Hose;
 use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind};
 
 use crate::described::Described;
 
@@ -29,7 +29,6 @@ fn m3_pa(cm3_bar: f64) -> f64 {
 /// Compliance without creep.
 pub static ELASTIC: Described = Described {
     id: "hose-compliance",
-    form: None,
     title: "Compliance of hoses",
     equation: "dp/dt = (sum Q - A v) / (V/E + C)",
     source: "two-wire hose, 0.25 l at 0.4 to 0.8e9 Pa: 0.03 to 0.06 cm3/bar",
@@ -38,14 +37,13 @@ pub static ELASTIC: Described = Described {
     parameters: &[COMPLIANCE],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| {
         hooks.hose = Hose {
             at_once_m3_pa: m3_pa(values[0]),
             ..Hose::default()
         };
     },
+    ..Described::USUAL
 };
 
 /// Compliance with creep.
@@ -61,15 +59,11 @@ pub static CREEPING: Described = Described {
     parameters: &[
         COMPLIANCE,
         Parameter {
-            name: "share",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "share",
             meaning: "share of it that creeps",
-            null: 0.0,
             typical: 0.5,
             low: 0.0,
             high: 1.0,
+            ..Parameter::ratio("share")
         },
         Parameter {
             name: "creep",
@@ -85,8 +79,6 @@ pub static CREEPING: Described = Described {
     ],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| {
         let whole_m3_pa = m3_pa(values[0]);
         hooks.hose = Hose {
@@ -95,4 +87,5 @@ pub static CREEPING: Described = Described {
             catching_up_1_s: 1.0 / values[2],
         };
     },
+    ..Described::USUAL
 };

@@ -11,7 +11,7 @@
 //! load is level.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter};
 
 use crate::catalogue::over_the_stroke;
 use crate::described::Described;
@@ -19,7 +19,6 @@ use crate::described::Described;
 /// Arm of the load behind the hitch point.
 pub static WITH_WEIGHT: Described = Described {
     id: "load-arm",
-    form: None,
     title: "Arm of the load behind the hitch point",
     equation: "F = F_weight (1 + share [even + (1 - |even|) (2 x / stroke - 1)])",
     source: "virtual work with a pitching mast; overhang 0.61 m (OECD frame), pitch 5 to 12 degrees: \
@@ -28,38 +27,24 @@ pub static WITH_WEIGHT: Described = Described {
          holding and lowering",
     parameters: &[
         Parameter {
-            name: "share",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "share",
             meaning: "change of the weight's force at the end of the stroke",
-            null: 0.0,
             typical: 0.1,
             low: -0.5,
             high: 0.5,
+            ..Parameter::ratio("share")
         },
         Parameter {
-            name: "even",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "even",
             meaning: "part of it that is constant over the stroke; negative: more at the low end",
             null: 0.5,
             typical: 0.0,
             low: -1.0,
             high: 1.0,
+            ..Parameter::ratio("even")
         },
     ],
-    channels: &[
-        Channel::PumpPressure,
-        Channel::CylinderPressure,
-        Channel::Flow,
-        Channel::RockerAngle,
-    ],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
+    channels: &Channel::ALL,
     attach: with_weight,
+    ..Described::USUAL
 };
 
 /// Arm of the load behind the hitch point, with a pitch that differs from that of the links.
@@ -70,15 +55,11 @@ pub static WITH_LOAD: Described = Described {
          z = 2 x / stroke - 1",
     parameters: &[
         Parameter {
-            name: "share",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "share",
             meaning: "change of the load's force, mean over the stroke",
-            null: 0.0,
             typical: 0.1,
             low: -0.5,
             high: 0.5,
+            ..Parameter::ratio("share")
         },
         over_the_stroke::shape(
             "slope",

@@ -6,7 +6,7 @@
 //! at 150 kg and mid-stroke, and is a larger one at lighter loads.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
@@ -17,21 +17,16 @@ const STEP_S: f64 = 0.005;
 const USUAL_LOAD_KG: f64 = 150.0;
 
 const SHARE: Parameter = Parameter {
-    name: "share",
-    unit: "",
-    kind: ParameterKind::Ratio,
-    key: "share",
     meaning: "share of the inertia of load and dead weight",
-    null: 0.0,
     typical: 0.5,
     low: 0.0,
     high: 5.0,
+    ..Parameter::ratio("share")
 };
 
 /// Inertia proportional to the load.
 pub static OF_LOAD: Described = Described {
     id: "load-inertia",
-    form: None,
     title: "Inertia of load and linkage",
     equation: "p A = F_weight + share M(x) dv/dt, M = m (dh/dx)^2 + 20 kg",
     source: "Lagrange's equation of the linkage; rocker and arms of 0.3 to 0.8 kg m2 add 30 to 80 kg \
@@ -40,10 +35,8 @@ pub static OF_LOAD: Described = Described {
          on the dynamic starting point slower ringing",
     parameters: &[SHARE],
     channels: &[Channel::CylinderPressure],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| resist(values[0], 0.0, hooks),
+    ..Described::USUAL
 };
 
 /// Inertia with a part on the rocker shaft.
@@ -55,15 +48,11 @@ pub static AND_SHAFT: Described = Described {
     parameters: &[
         SHARE,
         Parameter {
-            name: "shaft",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "shaft",
             meaning: "share of it on the rocker shaft, at 150 kg and mid-stroke",
-            null: 0.0,
             typical: 0.2,
             low: 0.0,
             high: 1.0,
+            ..Parameter::ratio("shaft")
         },
     ],
     refines: true,

@@ -7,7 +7,7 @@
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::EffectHooks;
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse, units};
+use hitch_plant::{Channel, Parameter, ParameterKind, units};
 
 use crate::described::Described;
 
@@ -31,17 +31,14 @@ const CHANNELS: &[Channel] = &[Channel::RockerAngle];
 /// Leakage independent of temperature.
 pub static EVEN: Described = Described {
     id: "lowering-leakage",
-    form: None,
     title: "Leakage of the load-holding valves",
     equation: "Q_leak = conductance * p_C",
     source: "laminar gap, Merritt 3.3; worn load-holding valves",
     shows: "the hitch sinks while holding, faster under heavy loads; little else",
     parameters: PARAMETERS,
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| leak(values[0], hooks),
+    ..Described::USUAL
 };
 
 /// Leakage proportional to the oil's fluidity.
@@ -54,14 +51,12 @@ pub static THINNING: Described = Described {
     shows: "the hitch sinks while holding, faster under heavy loads and with hot oil; little else",
     parameters: PARAMETERS,
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, conditions, hooks| {
         let fluidity =
             viscosity_m2_s(SPECIFIED_AT_C) / viscosity_m2_s(conditions.oil_temperature_c);
         leak(values[0] * fluidity, hooks);
     },
+    ..Described::USUAL
 };
 
 fn leak(conductance_lpm_bar: f64, hooks: &mut EffectHooks) {

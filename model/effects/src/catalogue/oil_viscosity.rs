@@ -11,7 +11,7 @@
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind};
 
 use crate::described::Described;
 
@@ -24,7 +24,6 @@ const DIAMETER_M_A: f64 = 2.0 * 0.004;
 /// Laminar share of the flow through the lowering valve.
 pub static SERIES: Described = Described {
     id: "oil-viscosity",
-    form: None,
     title: "Laminar flow in the lowering valve",
     equation: "Q = Q_table(I) [(1 - share) sqrt(r) + share r exp(fall (T - 40 C))], r = dp / dp_ref",
     source: "laminar-turbulent transition, McCloy & Martin; SAE 30 loses 4 to 6 % of its viscosity a \
@@ -33,15 +32,11 @@ pub static SERIES: Described = Described {
          the pressure; at one temperature the opposite of a flow force",
     parameters: &[
         Parameter {
-            name: "share",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "share",
             meaning: "laminar share of the flow at the drop of its curve and 40 C",
-            null: 0.0,
             typical: 0.2,
             low: 0.0,
             high: 1.0,
+            ..Parameter::ratio("share")
         },
         Parameter {
             name: "fall",
@@ -56,10 +51,8 @@ pub static SERIES: Described = Described {
         },
     ],
     channels: &[Channel::Flow, Channel::RockerAngle],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: attach_series,
+    ..Described::USUAL
 };
 
 fn attach_series(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
@@ -93,10 +86,8 @@ pub static FLOW_NUMBER: Described = Described {
         high: 1000.0,
     }],
     channels: &[Channel::Flow, Channel::RockerAngle],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: attach_flow_number,
+    ..Described::USUAL
 };
 
 fn attach_flow_number(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {

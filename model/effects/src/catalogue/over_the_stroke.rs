@@ -1,19 +1,15 @@
 //! Quantities that vary over the stroke, with a linear and a quadratic term.
 
-use hitch_plant::{Parameter, ParameterKind};
+use hitch_plant::Parameter;
 
 /// A parameter for the relative variation of a quantity over the stroke.
 pub(crate) const fn shape(name: &'static str, meaning: &'static str, widest: f64) -> Parameter {
     Parameter {
-        name,
-        unit: "",
-        kind: ParameterKind::Ratio,
-        key: name,
         meaning,
-        null: 0.0,
         typical: 0.1,
         low: -widest,
         high: widest,
+        ..Parameter::ratio(name)
     }
 }
 

@@ -7,14 +7,13 @@
 use std::sync::Arc;
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
-use hitch_plant::{Channel, Linkage, Parameter, ParameterKind, Reading, SizeResponse};
+use hitch_plant::{Channel, Linkage, Parameter, ParameterKind, Reading};
 
 use crate::described::Described;
 
 /// Backlash between piston and angle sensor.
 pub static PIN_BACKLASH: Described = Described {
     id: "pin-backlash",
-    form: None,
     title: "Backlash between piston and angle sensor",
     equation: "w = clamp(w_before, x - width/2, x + width/2); angle = angle(w)",
     source: "worn pins and sensor lever, 0.5 to 2 mm at the piston",
@@ -32,10 +31,8 @@ pub static PIN_BACKLASH: Described = Described {
         high: 20.0,
     }],
     channels: &[Channel::RockerAngle],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach,
+    ..Described::USUAL
 };
 
 fn attach(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {

@@ -6,44 +6,32 @@
 //! with a linear and a quadratic term.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter};
 
 use crate::catalogue::coulomb_friction::TRANSITION_SPEED_M_S;
 use crate::catalogue::over_the_stroke;
 use crate::described::Described;
 
 const SHARE: Parameter = Parameter {
-    name: "share",
-    unit: "",
-    kind: ParameterKind::Ratio,
-    key: "share",
     meaning: "friction over the weight's force",
-    null: 0.0,
     typical: 0.05,
     low: 0.0,
     high: 0.5,
+    ..Parameter::ratio("share")
 };
 
 /// Friction in the pins of the linkage.
 pub static EVEN: Described = Described {
     id: "pin-friction",
-    form: None,
     title: "Friction in the pins of the linkage",
     equation: "F = share F_weight tanh(v / 3 mm/s)",
     source: "sum of mu r |F_pin| |dphi/dx| over the pins; 3 to 8 % of the weight's force",
     shows: "cylinder pressure steps down from lifting to holding and again to lowering, in \
          proportion to the load; slower lowering at every load",
     parameters: &[SHARE],
-    channels: &[
-        Channel::PumpPressure,
-        Channel::CylinderPressure,
-        Channel::Flow,
-        Channel::RockerAngle,
-    ],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
+    channels: &Channel::ALL,
     attach: |values, conditions, hooks| rub(values[0], [0.0; 2], conditions, hooks),
+    ..Described::USUAL
 };
 
 /// Friction in the pins of the linkage that varies over the stroke.

@@ -3,14 +3,13 @@
 //! `y = p + o`; 0.25 to 1 % of a full scale of 250 or 350 bar is 0.6 to 3.5 bar, more with temperature.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
-use hitch_plant::{Channel, Parameter, ParameterKind, Reading, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind, Reading};
 
 use crate::described::Described;
 
 /// Offset of the cylinder pressure sensor.
 pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     id: "pressure-sensor-offset",
-    form: None,
     title: "Offset of the cylinder pressure sensor",
     equation: "y = p_C + offset",
     source: "data sheets of mobile pressure sensors, 0.25 to 1 % of full scale",
@@ -28,10 +27,8 @@ pub static PRESSURE_SENSOR_OFFSET: Described = Described {
         high: 20.0,
     }],
     channels: &[Channel::CylinderPressure],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach,
+    ..Described::USUAL
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {

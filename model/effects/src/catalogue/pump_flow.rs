@@ -3,35 +3,28 @@
 //! `Q_pump = (1 + change) Q_declared`: another engine speed or displacement. The slip of a worn pump depends on the
 //! pressure instead (`pump-leakage`). It shows only if the lift valve demands more than the delivery.
 
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
 /// Deviation of the pump's delivery.
 pub static PUMP_FLOW: Described = Described {
     id: "pump-flow",
-    form: None,
     title: "Deviation of the pump flow",
     equation: "Q_pump = (1 + change) Q_max",
     source: "engine speed and displacement; a deviation below 20 % rarely affects a lift",
     shows: "lifting at high currents, equally at all pressures; invisible while the compensator has surplus flow",
     parameters: &[Parameter {
-        name: "change",
-        unit: "",
-        kind: ParameterKind::Ratio,
-        key: "change",
         meaning: "change of the flow as a share of the declared one",
-        null: 0.0,
         typical: -0.3,
         low: -0.7,
         high: 1.0,
+        ..Parameter::ratio("change")
     }],
     channels: &[Channel::PumpPressure, Channel::Flow],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, conditions, hooks| {
         let lost_m3_s = -values[0] * conditions.constants.pump.flow_m3_s();
         hooks.pump_slip.push(Box::new(move |_| lost_m3_s));
     },
+    ..Described::USUAL
 };

@@ -5,14 +5,13 @@
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind};
 
 use crate::described::Described;
 
 /// Slip of the pump.
 pub static PUMP_LEAKAGE: Described = Described {
     id: "pump-leakage",
-    form: None,
     title: "Slip of the pump",
     equation: "Q_pump = Q_max - slip p_P",
     source: "Wilson's slip flow, Merritt 4.2: efficiency 0.88 at 150 bar is 0.044 l/min/bar",
@@ -30,10 +29,8 @@ pub static PUMP_LEAKAGE: Described = Described {
         high: 0.5,
     }],
     channels: &[Channel::PumpPressure, Channel::Flow],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach,
+    ..Described::USUAL
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {

@@ -8,14 +8,13 @@
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::hooks::elements::ReliefOverride;
 use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind};
 
 use crate::described::Described;
 
 /// Override of the relief valve.
 pub static RELIEF_OVERRIDE: Described = Described {
     id: "relief-override",
-    form: None,
     title: "Override of the relief valve",
     equation: "p_P = p_set + override (Q_relief / Q_pump - 1 + above)",
     source: "Merritt 5.6; 10 to 25 bar over the range of a direct-acting valve, Hopsan's example 15 \
@@ -35,22 +34,17 @@ pub static RELIEF_OVERRIDE: Described = Described {
             high: 60.0,
         },
         Parameter {
-            name: "above",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "above",
             meaning: "share of it above the setting",
             null: 0.2,
             typical: 0.0,
             low: 0.0,
             high: 1.0,
+            ..Parameter::ratio("above")
         },
     ],
     channels: &[Channel::PumpPressure, Channel::Flow],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach,
+    ..Described::USUAL
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {

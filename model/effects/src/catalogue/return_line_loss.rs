@@ -6,7 +6,7 @@
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::EffectHooks;
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse, units};
+use hitch_plant::{Channel, Parameter, ParameterKind, units};
 
 use crate::described::Described;
 
@@ -31,17 +31,14 @@ const LOSS: Parameter = Parameter {
 /// Turbulent back pressure of the return line.
 pub static TURBULENT: Described = Described {
     id: "return-line-loss",
-    form: None,
     title: "Back pressure of the return line",
     equation: "p_T = loss * (Q_lower / 40 l/min)^2",
     source: "turbulent pipe and filter loss; filter 0.3 to 1 bar and 2 m of hose 0.5 bar at 60 l/min",
     shows: "lowering at high current and light load is slower; no change at low flow",
     parameters: &[LOSS],
     channels: &[Channel::Flow, Channel::RockerAngle],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: |values, _, hooks| hold_back(values[0], 0.0, hooks),
+    ..Described::USUAL
 };
 
 /// Back pressure of the return line with a laminar part.
@@ -54,15 +51,11 @@ pub static LAMINAR: Described = Described {
     parameters: &[
         LOSS,
         Parameter {
-            name: "share",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "share",
             meaning: "share of it that is laminar, at 40 l/min and 40 degC",
-            null: 0.0,
             typical: 0.2,
             low: 0.0,
             high: 1.0,
+            ..Parameter::ratio("share")
         },
     ],
     refines: true,

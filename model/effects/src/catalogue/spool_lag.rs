@@ -8,7 +8,7 @@
 
 use hitch_plant::components::lag::Lag;
 use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
-use hitch_plant::{Channel, Currents, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Currents, Parameter, ParameterKind};
 
 use crate::described::Described;
 
@@ -17,7 +17,6 @@ const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::Ro
 /// Spools without overshoot.
 pub static CREEPING: Described = Described {
     id: "spool-lag",
-    form: None,
     title: "Lag of the spools",
     equation: "(1 - share) lag w1' + w1 = I; share lag w' + w = w1; Q = Q_table(w)",
     source: "second-order spool, Merritt ch. 6; data sheets of proportional valves: 40 to 100 ms to \
@@ -37,22 +36,16 @@ pub static CREEPING: Described = Described {
             high: 1.0,
         },
         Parameter {
-            name: "share",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "share",
             meaning: "share of the lag in the second stage",
-            null: 0.0,
             typical: 0.25,
             low: 0.0,
             high: 0.5,
+            ..Parameter::ratio("share")
         },
     ],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: attach_creeping,
+    ..Described::USUAL
 };
 
 /// Spools with overshoot.
@@ -78,22 +71,17 @@ pub static SWINGING: Described = Described {
             high: 1.0,
         },
         Parameter {
-            name: "damping",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "damping",
             meaning: "damping ratio of the spool",
             null: 1.0,
             typical: 0.8,
             low: 0.3,
             high: 0.99,
+            ..Parameter::ratio("damping")
         },
     ],
     channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach: attach_swinging,
+    ..Described::USUAL
 };
 
 fn attach_swinging(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {

@@ -30,15 +30,12 @@ const PARAMETERS: &[Parameter] = &[
         high: 0.5,
     },
     Parameter {
-        name: "jump",
-        unit: "",
-        kind: ParameterKind::Ratio,
-        key: "jump",
         meaning: "share of the band that it recovers in one jump",
         null: 0.5,
         typical: 0.9,
         low: 0.5,
         high: 1.0,
+        ..Parameter::ratio("jump")
     },
 ];
 
@@ -47,7 +44,6 @@ const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::Ro
 /// Spools that stick again after every jump.
 pub static STICKING: Described = Described {
     id: "spool-stiction",
-    form: None,
     title: "Stiction of the spools",
     equation: "|I - w| > band: w = w + sign(I - w) jump band; else w stays; Q = Q_table(w)",
     source: "Kano et al. 2004; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on plain DC",
@@ -55,10 +51,9 @@ pub static STICKING: Described = Described {
          with steps alone indistinguishable from hysteresis",
     parameters: PARAMETERS,
     channels: CHANNELS,
-    needs: None,
     size_response: SizeResponse::Switching,
-    refines: false,
     attach: |values, _, hooks| attach(values, hooks, Jumping::default()),
+    ..Described::USUAL
 };
 
 /// Spools that follow the current after breaking loose.
@@ -73,10 +68,9 @@ pub static FOLLOWING: Described = Described {
          small reversals change nothing; with steps alone indistinguishable from hysteresis",
     parameters: PARAMETERS,
     channels: CHANNELS,
-    needs: None,
     size_response: SizeResponse::Stepped,
-    refines: false,
     attach: |values, _, hooks| attach(values, hooks, Following::default()),
+    ..Described::USUAL
 };
 
 /// Attaches a type of spool to both valves.

@@ -5,7 +5,7 @@
 //! mm/s.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
-use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Parameter, ParameterKind};
 
 use crate::catalogue::coulomb_friction::TRANSITION_SPEED_M_S;
 use crate::described::Described;
@@ -13,7 +13,6 @@ use crate::described::Described;
 /// Stribeck friction at the piston.
 pub static STRIBECK_FRICTION: Described = Described {
     id: "stribeck-friction",
-    form: None,
     title: "Stribeck friction at the piston",
     equation: "F = force [1 + (breakaway - 1) exp(-|v| / speed)] tanh(v / 3 mm/s)",
     source: "Simscape cylinder friction; Jelali & Kroll 4.3; breakaway 20 to 60 % over Coulomb \
@@ -32,15 +31,12 @@ pub static STRIBECK_FRICTION: Described = Described {
             high: 5000.0,
         },
         Parameter {
-            name: "breakaway",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "breakaway",
             meaning: "breakaway friction relative to sliding friction",
             null: 1.0,
             typical: 1.6,
             low: 1.0,
             high: 20.0,
+            ..Parameter::ratio("breakaway")
         },
         Parameter {
             name: "speed",
@@ -55,10 +51,8 @@ pub static STRIBECK_FRICTION: Described = Described {
         },
     ],
     channels: &[Channel::CylinderPressure, Channel::RockerAngle],
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
     attach,
+    ..Described::USUAL
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {

@@ -7,7 +7,7 @@
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::EffectHooks;
-use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind};
 
 use crate::described::Described;
 
@@ -26,17 +26,9 @@ const COEFFICIENT: Parameter = Parameter {
     high: 100000.0,
 };
 
-const CHANNELS: &[Channel] = &[
-    Channel::PumpPressure,
-    Channel::CylinderPressure,
-    Channel::Flow,
-    Channel::RockerAngle,
-];
-
 /// Viscous friction independent of temperature.
 pub static EVEN: Described = Described {
     id: "viscous-friction",
-    form: None,
     title: "Viscous friction at the piston",
     equation: "F = coefficient v",
     source: "Jelali & Kroll 4.3; 500 to 5000 N s/m for seals of a 76 mm cylinder",
@@ -46,10 +38,7 @@ pub static EVEN: Described = Described {
         low: -100000.0,
         ..COEFFICIENT
     }],
-    channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
+    channels: &Channel::ALL,
     attach: |values, conditions, hooks| {
         let declared_n_s_m = match conditions.constants.dynamics {
             Dynamics::Steady => 0.0,
@@ -57,6 +46,7 @@ pub static EVEN: Described = Described {
         };
         oppose(values[0].max(-declared_n_s_m), hooks);
     },
+    ..Described::USUAL
 };
 
 /// Viscous friction that depends on the oil's viscosity.
@@ -71,26 +61,20 @@ pub static THICKENING: Described = Described {
     parameters: &[
         COEFFICIENT,
         Parameter {
-            name: "exponent",
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: "exponent",
             meaning: "exponent of its dependence on viscosity",
-            null: 0.0,
             typical: 0.7,
             low: 0.0,
             high: 1.5,
+            ..Parameter::ratio("exponent")
         },
     ],
-    channels: CHANNELS,
-    needs: None,
-    size_response: SizeResponse::Smooth,
-    refines: false,
+    channels: &Channel::ALL,
     attach: |values, conditions, hooks| {
         let thickness =
             viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(SPECIFIED_AT_C);
         oppose(values[0] * thickness.powf(values[1]), hooks);
     },
+    ..Described::USUAL
 };
 
 fn oppose(coefficient_n_s_m: f64, hooks: &mut EffectHooks) {

@@ -47,6 +47,22 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// A ratio that is off at zero, without text and range.
+    #[must_use]
+    pub const fn ratio(name: &'static str) -> Self {
+        Self {
+            name,
+            unit: "",
+            kind: ParameterKind::Ratio,
+            key: name,
+            meaning: "",
+            null: 0.0,
+            typical: 0.0,
+            low: 0.0,
+            high: 0.0,
+        }
+    }
+
     /// Whether a value is at an end of the range other than the null value.
     #[must_use]
     pub fn is_at_a_limit(&self, value: f64) -> bool {
