@@ -32,10 +32,10 @@ pub fn bundle<'a>(modules: impl IntoIterator<Item = (&'a str, &'a str)>) -> Stri
     joined
 }
 
-/// Names in braces and the module of an import.
-fn imported(line: &str) -> Option<(&str, &str)> {
+/// Names in braces and the module of an import; a name of its own, `a as b`, is `a: b` where an object is taken apart.
+fn imported(line: &str) -> Option<(String, &str)> {
     let (names, from) = line.strip_prefix("import ")?.split_once(" from \"./")?;
-    Some((names, from.strip_suffix("\";")?))
+    Some((names.replace(" as ", ": "), from.strip_suffix("\";")?))
 }
 
 /// The name that a declaration defines.
@@ -56,11 +56,12 @@ mod tests {
     fn modules_keep_their_scopes() {
         let first =
             "const own = 1;\nexport const SHOWN_S = own;\nexport async function draw(at) {\n}\n";
-        let second = "import { draw } from \"./a.js\";\nconst own = 2;\ndraw(own);\n";
+        let second =
+            "import { draw, SHOWN_S as long_s } from \"./a.js\";\nconst own = 2;\ndraw(own);\n";
         let expected = "const modules = {};\n\
             modules[\"a.js\"] = (() => {\nconst own = 1;\nconst SHOWN_S = own;\nasync function draw(at) {\n}\n\
             return { SHOWN_S, draw };\n})();\n\
-            modules[\"b.js\"] = (() => {\nconst { draw } = modules[\"a.js\"];\nconst own = 2;\ndraw(own);\n\
+            modules[\"b.js\"] = (() => {\nconst { draw, SHOWN_S: long_s } = modules[\"a.js\"];\nconst own = 2;\ndraw(own);\n\
             return {  };\n})();\n";
         assert_eq!(bundle([("a.js", first), ("b.js", second)]), expected);
     }
