@@ -3,9 +3,9 @@
 use hitch_protocols::can::Frame;
 use hitch_quantities::units::PerMille;
 
-use super::converter::Samples;
 use super::drive::Drive;
 use super::panel::Panel;
+use super::samples::Samples;
 
 /// Inputs at the start of a millisecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

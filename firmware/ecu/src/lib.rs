@@ -10,7 +10,7 @@
 //! It may depend on all other crates of the firmware, and none of them on it. It is pure code on a [`Hardware`]
 //! interface, which board, emulator and tests implement, so the same code has the same behaviour on all three.
 //!
-//! * `converter`, `scaling`, `set_points`, `panel`, `panel_inputs`: from codes and contacts to inputs,
+//! * `samples`, `converter`, `scaling`, `set_points`, `panel`, `panel_inputs`: from codes and contacts to inputs,
 //! * `coil_driver`, `drive`, `enable_line`: from pulse widths to pins,
 //! * `can_port`: the bus by a driver of `embedded-can`,
 //! * `arbiter`, `status`: commands of an implement, and status to it,
@@ -41,6 +41,7 @@ mod hosted_ecu;
 pub mod link;
 mod panel;
 mod panel_inputs;
+mod samples;
 mod scaling;
 mod service;
 mod set_points;
@@ -53,12 +54,13 @@ pub use adc_code::AdcCode;
 pub use application::Ecu;
 pub use can_port::CanPort;
 pub use coil_driver::{CoilDriver, CoilDriverError};
-pub use converter::{Conversion, Samples, Signal};
+pub use converter::Conversion;
 pub use drive::{Compare, Drive};
 pub use hardware::{Contacts, FlashRegions, Hardware};
 pub use hosted_ecu::{HostedEcu, Probe};
 pub use panel::{Contact, Panel};
 pub use panel_inputs::PanelInputs;
+pub use samples::{Samples, Signal};
 pub use scaling::BoardScaling;
 pub use start_check::StartCheck;
 pub use task_sequence_monitor::{Kick, Task, TaskSequenceMonitor};

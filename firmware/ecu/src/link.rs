@@ -17,9 +17,9 @@ use hitch_protocols::can::Frame;
 use hitch_quantities::units::PerMille;
 
 use super::adc_code::AdcCode;
-use super::converter::Samples;
 use super::hardware::Contacts;
 use super::panel::Panel;
+use super::samples::Samples;
 
 /// Bytes of a request without its frames.
 pub const REQUEST_BYTES: usize = 2 * Samples::CHANNELS + 12;
