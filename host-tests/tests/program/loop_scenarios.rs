@@ -272,7 +272,7 @@ fn scenarios_of_the_field_say_what_is_required_and_take_settings() {
     assert_self_contained(&report);
     // A guard that may raise the hitch by half a degree only lets the wheels slip more, in percentage points.
     let weak = figures("--scenario slip --set slip.most_raise=0.5");
-    let [guarded, weak] = [&slip, &weak].map(|figures| figures[0]["value"].as_f64().unwrap());
+    let [guarded, weak] = [&slip, &weak].map(|figures| figures[1]["value"].as_f64().unwrap());
     assert!(weak > guarded + 1.0, "{guarded} {weak}");
     let output = run(
         folder.path(),
