@@ -44,7 +44,7 @@ impl Automation {
     }
 }
 
-/// State of the tractor that a lead server tells, 4 bits.
+/// State of the tractor in the status of a lead server, 4 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Operation {

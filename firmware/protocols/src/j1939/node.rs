@@ -134,7 +134,7 @@ impl Node {
         self.remote.set_parameters(parameters);
     }
 
-    /// Takes who may command the hitch by Tractor Implement Management; nobody unless told otherwise.
+    /// Sets who may command the hitch by Tractor Implement Management; without a call nobody may.
     pub fn set_tim_authority(&mut self, authority: Authority) {
         self.tim.set_authority(authority);
     }

@@ -285,8 +285,8 @@ impl Tim {
         None
     }
 
-    /// The command of a value. "Ready" asks for the hitch where it is. After the consent it is ignored, as a position has
-    /// to follow, and while the client commands it is invalid.
+    /// The command of a value. "Ready" requests the hitch at its present position. It is ignored after the consent, when a
+    /// position has to follow, and it is invalid while the client commands.
     fn command(&self, value: u16) -> Option<HitchCommand> {
         match (value, self.view.stage) {
             (0..=LARGEST_POSITION, _) => {

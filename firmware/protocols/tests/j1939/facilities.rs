@@ -1,4 +1,4 @@
-//! The facilities that the node tells, and what implements require (ISO 11783-7, B.24.3 and B.24.4).
+//! The facilities that the node sends, and those that implements require (ISO 11783-7, B.24.3 and B.24.4).
 
 use hitch_protocols::j1939::{Draft, InWork, Pgn, Variant};
 use hitch_quantities::calibration::design_parameters::RemoteParameters;

@@ -9,7 +9,7 @@ use super::pins::{self, Pin};
 /// The contacts on this board.
 pub type Switches = PanelInputs<Pin>;
 
-/// Their pins. PB4 and PB6 are left out: the STM32G474 pulls them down until told otherwise (RM0440, UCPD, dead battery).
+/// Their pins. PB4 and PB6 are left out: after a reset the STM32G474 pulls them down (RM0440, UCPD, dead battery).
 const CONTACTS: [(Gpio, usize); 14] = [
     (GPIOC, 6),
     (GPIOC, 7),
