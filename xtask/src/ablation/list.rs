@@ -92,7 +92,7 @@ impl Ablation {
             );
         }
         let off = format!(
-            "({{ extern crate std; std::env::var_os(\"{SWITCH}\").is_some_and(|name| name == \"{}\") }})",
+            "({{ extern crate std; std::env::var(\"{SWITCH}\").is_ok_and(|set| set.split('+').any(|name| name == \"{}\")) }})",
             self.name
         );
         Ok(text.replacen(find, &replace.replace("{off}", &off), 1))

@@ -26,32 +26,51 @@ pub fn check() -> Result<()> {
     Ok(())
 }
 
-/// Runs the benchmark of a part without its heuristics, one at a time; `names` selects some of them.
+/// Runs the benchmark of a part without its heuristics. `sets` selects the rows: names joined by `+` are removed
+/// together; without any, each heuristic is removed alone.
 pub fn run(arguments: &[String]) -> Result<()> {
-    let Some((part, names)) = arguments.split_first() else {
+    let Some((part, sets)) = arguments.split_first() else {
         bail!("which part: identification or control?");
     };
     let battery: Battery = part.parse()?;
     let mut ablations = list::read()?;
     ablations.retain(|ablation| ablation.part == battery);
-    if let Some(unknown) = names
+    let each = ablations.iter().map(|ablation| ablation.name.clone());
+    let sets = if sets.is_empty() {
+        each.collect()
+    } else {
+        sets.to_vec()
+    };
+    let removed: Vec<String> = sets
         .iter()
-        .find(|name| ablations.iter().all(|ablation| ablation.name != **name))
-    {
-        bail!("xtask/ablations.toml has no heuristic {unknown} of {part}");
-    }
+        .map(|set| removed_by(set, &ablations))
+        .collect::<Result<_>>()?;
     let folder = copied(&ablations)?;
     let program = battery.build(&folder)?;
     let whole = battery.run(&program, None)?;
     println!("{}", battery.header());
     println!("{}", battery.row("(none)", &whole, &whole));
-    for ablation in ablations {
-        if names.is_empty() || names.contains(&ablation.name) {
-            let without: Outcome = battery.run(&program, Some(&ablation.name))?;
-            println!("{}", battery.row(&ablation.removes, &whole, &without));
-        }
+    for (set, removed) in sets.iter().zip(removed) {
+        let without: Outcome = battery.run(&program, Some(set))?;
+        println!("{}", battery.row(&removed, &whole, &without));
     }
     Ok(())
+}
+
+/// What a set of names joined by `+` removes, for the table.
+fn removed_by(set: &str, ablations: &[Ablation]) -> Result<String> {
+    let texts: Vec<&str> = set
+        .split('+')
+        .map(|name| {
+            let named = ablations.iter().find(|ablation| ablation.name == name);
+            named
+                .map(|ablation| ablation.removes.as_str())
+                .with_context(|| {
+                    format!("xtask/ablations.toml has no heuristic {name} of this part")
+                })
+        })
+        .collect::<Result<_>>()?;
+    Ok(texts.join(", and "))
 }
 
 /// A copy of the workspace with every entry behind its switch.
