@@ -12,10 +12,9 @@ use hitch_model_file::Template;
 use hitch_plant::{Model, Valve};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 
 use super::refusal::Refusal;
-use super::request::{Answer, Known, Of, blocking, find, lock};
+use super::request::{Answer, Known, Of, blocking, done, find, idle, lock};
 use super::sessions::{Sessions, Shared};
 use crate::arguments::known_constants::{ConstantFault, KnownConstants};
 use crate::base_model::data_sheet::{self, QUESTIONS};
@@ -218,11 +217,9 @@ async fn known(State(sessions): Known, Json(draft): Json<Draft>) -> Answer<Check
 async fn back(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     let session = find(&sessions, &of.session)?;
     let mut open = lock(&session);
-    if open.job.is_some() {
-        return Err(busy());
-    }
+    idle(&open)?;
     if open.back() {
-        Ok(Json(json!({})))
+        done()
     } else {
         Err(Refusal::conflict("there is no earlier first model"))
     }
@@ -232,20 +229,12 @@ async fn back(State(sessions): Known, Json(of): Json<Of>) -> Answer {
 pub(super) async fn exchange(session: Shared, model: Model) -> Answer {
     let subject = {
         let open = lock(&session);
-        if open.job.is_some() {
-            return Err(busy());
-        }
+        idle(&open)?;
         Arc::clone(open.subject())
     };
     let exchanged = blocking(move || subject.exchanged(model)).await??;
     let mut open = lock(&session);
-    if open.job.is_some() {
-        return Err(busy());
-    }
+    idle(&open)?;
     open.exchange(Arc::new(exchanged));
-    Ok(Json(json!({})))
-}
-
-fn busy() -> Refusal {
-    Refusal::conflict("a computation is running; wait for it or cancel it")
+    done()
 }

@@ -46,7 +46,7 @@ impl Proposing {
         let next = match self {
             Self::Explanation => session
                 .present_explanation()
-                .map(|explained| &explained.shown.next),
+                .map(|explained| &explained.found.shown.next),
             Self::Ranking => session.present_ranking().map(|ranking| &ranking.shown.next),
         };
         let none =

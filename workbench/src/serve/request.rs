@@ -9,7 +9,7 @@ use axum::extract::State;
 use axum::http::StatusCode;
 use hitch_plant::Channel;
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::sync::{Arc, MutexGuard, PoisonError};
 
 /// The sessions of all tabs.
@@ -59,6 +59,21 @@ pub(super) fn find(sessions: &Sessions, id: &str) -> Result<Shared, Refusal> {
 /// A session to look at or to change; a computation that failed leaves it as it was.
 pub(super) fn lock(session: &Shared) -> MutexGuard<'_, Session> {
     session.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Refuses a request that a running computation forbids.
+pub(super) fn idle(session: &Session) -> Result<(), Refusal> {
+    match session.job {
+        None => Ok(()),
+        Some(_) => Err(Refusal::conflict(
+            "a computation is running; wait for it or cancel it",
+        )),
+    }
+}
+
+/// The page has nothing more to learn.
+pub(super) fn done() -> Answer {
+    Ok(Json(Value::Object(Map::new())))
 }
 
 /// Computes off the threads that answer requests.

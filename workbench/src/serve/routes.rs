@@ -30,7 +30,7 @@ use crate::comparison::{WorstStretch, worst_in_part};
 use crate::error::Error;
 use crate::report::map_view::Located;
 use crate::serve::refusal::Refusal;
-use crate::serve::request::{Answer, Known, Of, OfCell, blocking, find, lock};
+use crate::serve::request::{Answer, Known, Of, OfCell, blocking, done, find, idle, lock};
 use crate::web::plot::{Samples, SimulatedChannel};
 
 /// All routes, protected by the token.
@@ -225,7 +225,7 @@ async fn start(State(sessions): Known, Json(wanted): Json<Start>) -> Answer {
 
 async fn cancel(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     lock(&find(&sessions, &of.session)?).cancel();
-    Ok(Json(json!({})))
+    done()
 }
 
 #[derive(Debug, Deserialize)]
@@ -237,13 +237,9 @@ struct Go {
 async fn go(State(sessions): Known, Json(to): Json<Go>) -> Answer {
     let session = find(&sessions, &to.session)?;
     let mut open = lock(&session);
-    if open.job.is_some() {
-        return Err(Refusal::conflict(
-            "a computation is running; wait for it or cancel it",
-        ));
-    }
+    idle(&open)?;
     if open.go(to.at) {
-        Ok(Json(json!({})))
+        done()
     } else {
         Err(Refusal::conflict("the step no longer exists"))
     }

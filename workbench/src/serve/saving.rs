@@ -15,7 +15,7 @@ use super::session::Session;
 use super::sessions::{Sessions, Shared};
 use crate::comparison::Comparison;
 use crate::error::Error;
-use crate::explanation::{self, Found};
+use crate::explanation::Found;
 use crate::output::archive::zipped;
 use crate::report::{comparison_page, explanation_page};
 use hitch_closed_loop::driven::calibration;
@@ -104,13 +104,8 @@ fn page(session: &Shared) -> String {
         let comparison = Comparison::of(&evaluated, &first.model);
         return comparison_page::page(&comparison, &evaluated, &first.model);
     };
-    let found = explanation::Explained {
-        explanation: explained.explanation.clone(),
-        suggestion: explained.suggestion.clone(),
-        shown: explained.shown.clone(),
-    };
-    let experiment = first.experiment().clone();
-    let model = explained.model.clone();
+    let (experiment, model) = (first.experiment().clone(), explained.model.clone());
+    let found = explained.found.clone();
     explanation_page::page(&Found::finished(experiment, model, found))
 }
 

@@ -12,7 +12,7 @@ use serde_json::json;
 use super::first::{LARGEST_MODEL, OfFile, parsed};
 use super::jobs;
 use super::refusal::Refusal;
-use super::request::{Answer, Known, Of, OfCell, blocking, find, lock};
+use super::request::{Answer, Known, Of, OfCell, blocking, done, find, lock};
 use super::session::Session;
 use super::sessions::Sessions;
 use super::tasks::Task;
@@ -43,7 +43,7 @@ async fn step(State(sessions): Known, Json(of): Json<OfStep>) -> Answer {
     let second = of_step(&open, of.at);
     let gone = || Refusal::conflict("the step no longer exists");
     open.second = Some(Arc::new(second.ok_or_else(gone)?));
-    Ok(Json(json!({})))
+    done()
 }
 
 /// Starts the evaluation of a model file.
@@ -62,12 +62,12 @@ async fn swap(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     let mut open = lock(&session);
     let second = Arc::make_mut(open.second.as_mut().ok_or_else(none)?);
     second.is_after = !second.is_after;
-    Ok(Json(json!({})))
+    done()
 }
 
 async fn close(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     lock(&find(&sessions, &of.session)?).second = None;
-    Ok(Json(json!({})))
+    done()
 }
 
 /// The stretch that contributes most to the change of a cell.

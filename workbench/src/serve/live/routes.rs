@@ -15,7 +15,7 @@ use super::answer::LoopAnswer;
 use super::loop_source::LoopSource;
 use crate::error::Error;
 use crate::serve::refusal::Refusal;
-use crate::serve::request::{Answer, Known, Of, blocking, find, lock};
+use crate::serve::request::{Answer, Known, Of, blocking, done, find, lock};
 use crate::serve::saving::{TOML, attached};
 
 /// All routes of the closed loop.
@@ -81,7 +81,7 @@ async fn close(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     let session = find(&sessions, &of.session)?;
     let before = lock(&session).tab_loop.take();
     blocking(move || drop(before)).await?;
-    Ok(Json(json!({})))
+    done()
 }
 
 /// Writes the calibration of the present model to the ECU on the bus.
@@ -120,9 +120,8 @@ async fn step(State(sessions): Known, Json(wanted): Json<Advance>) -> Answer<Loo
     }
     let pending = {
         let session = lock(&session);
-        let present = &session.present().evaluated;
         let tab_loop = session.tab_loop.as_ref();
-        let tab_loop = tab_loop.filter(|known| Arc::ptr_eq(&known.of, present));
+        let tab_loop = tab_loop.filter(|known| session.is_present(&known.of));
         let stale = || Refusal::conflict("the model has changed; start the closed loop again");
         let tab_loop = tab_loop.ok_or_else(stale)?;
         tab_loop.advance(orders, wanted.milliseconds)?

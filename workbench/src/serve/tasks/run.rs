@@ -167,20 +167,13 @@ impl Ready {
             tolerances: Some(&start.tolerances),
             ..Options::default()
         };
-        let explained = explanation::Explained::new(self.experiment(), model, options, &|what| {
+        let found = explanation::Explained::new(self.experiment(), model, options, &|what| {
             reporter.progress(&format!("trying {what}"), None, None);
         });
-        let explanation::Explained {
-            explanation,
-            suggestion,
-            shown,
-        } = explained;
         Explained {
-            suggestion,
             of: Arc::clone(&self.present.evaluated),
             model: (**model).clone(),
-            explanation,
-            shown,
+            found,
         }
     }
 
@@ -245,7 +238,7 @@ impl Ready {
 
     /// The accepted steps of an explanation: step by step if all are accepted, else fitted together.
     fn adopted(&self, explained: &Explained, accepted: &[usize], reporter: &Reporter) -> Vec<Step> {
-        let found = &explained.explanation;
+        let found = &explained.found.explanation;
         let fixed = &self.present.evaluated.fit.estimate.fixed;
         if fixed.is_empty() && (0..found.steps.len()).all(|step| accepted.contains(&step)) {
             let constants = found.corrected.iter().map(|corrected| {

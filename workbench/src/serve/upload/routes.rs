@@ -22,7 +22,7 @@ use super::proposal::Proposal;
 use super::surveyed::Surveyed;
 use crate::error::Error;
 use crate::serve::refusal::Refusal;
-use crate::serve::request::{Answer, Known, Of, blocking, find, lock};
+use crate::serve::request::{Answer, Known, Of, blocking, done, find, idle, lock};
 use crate::serve::sessions::{Sessions, Shared};
 use crate::serve::source::{Origin, Subject};
 
@@ -123,7 +123,7 @@ async fn survey(State(sessions): Known, Json(of): Json<OfUpload>) -> Answer<Surv
 /// Deletes the files.
 async fn discard(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     lock(&find(&sessions, &of.session)?).upload = None;
-    Ok(Json(json!({})))
+    done()
 }
 
 /// The edited assignment of an upload.
@@ -168,14 +168,11 @@ impl Origin for Opened {
 async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let session = find(&sessions, &wanted.session)?;
     let upload = upload(&session, &wanted.upload)?;
-    let (model, is_busy) = {
+    let model = {
         let session = lock(&session);
-        (session.subject().model.clone(), session.job.is_some())
+        idle(&session)?;
+        session.subject().model.clone()
     };
-    let busy = || Refusal::conflict("a computation is running; wait for it or cancel it");
-    if is_busy {
-        return Err(busy());
-    }
     let from = Arc::clone(&upload);
     let subject = blocking(move || {
         let proposal = from.proposal.lock().unwrap_or_else(PoisonError::into_inner);
@@ -192,9 +189,7 @@ async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let (subject, notes) = subject.await??;
     let subject = Arc::new(subject);
     let mut session = lock(&session);
-    if session.job.is_some() {
-        return Err(busy());
-    }
+    idle(&session)?;
     session.open(subject);
     session.upload.take_if(|known| known.id == upload.id);
     Ok(Json(json!({ "notes": notes })))
