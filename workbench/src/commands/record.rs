@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::import::run_block::RunBlock;
 use crate::output;
 use crate::output::progress::Progress;
-use crate::text::wrapped;
+use crate::text::{joined, wrapped};
 use crate::xcp_tool::{
     BusAddress, CHANNELS, PERIOD_MS, Recording, Row, connect, record, tool_error,
 };
@@ -105,9 +105,9 @@ fn log(rows: &[Row]) -> String {
     let names: Vec<&str> = CHANNELS.iter().map(|(column, _)| *column).collect();
     let mut text = format!("time_s,{}\n", names.join(","));
     for (time_s, values) in rows {
-        let values: Vec<String> = values.iter().map(|value| format!("{value:.3}")).collect();
+        let values = values.iter().map(|value| format!("{value:.3}"));
         // Writing to a string can't fail.
-        let _ = writeln!(text, "{time_s:.3},{}", values.join(","));
+        let _ = writeln!(text, "{time_s:.3},{}", joined(values, ","));
     }
     text
 }

@@ -12,7 +12,7 @@ use hitch_plant::{AddedEffect, Effect, Model, full_name, is_same};
 
 use super::{Explanation, rebuilt};
 use crate::output::progress::Progress;
-use crate::text::significant;
+use crate::text::{joined, significant};
 
 /// An explanation with its inputs and display form.
 #[derive(Debug, Clone)]
@@ -159,10 +159,10 @@ fn account(model: &Model, fit: &Fit) -> String {
             .trim_end()
             .to_owned()
     };
-    let effects: Vec<String> = effects.map(named).collect();
+    let effects = effects.map(named);
     format!(
         "best so far: {}; error {:.2} sigma",
-        effects.join(", "),
+        joined(effects, ", "),
         fit.error()
     )
 }

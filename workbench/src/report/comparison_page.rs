@@ -34,11 +34,9 @@ fn channels(comparison: &Comparison) -> Markup {
             .into_iter()
             .chain(numbers)
             .chain(rest)
-            .collect()
     };
-    let rows: Vec<Vec<String>> = comparison.channels.iter().map(row).collect();
     page::table(
         &["channel", "error, sigma", "rms", "noise", "unit", "samples"],
-        &rows,
+        comparison.channels.iter().map(row),
     )
 }

@@ -19,7 +19,7 @@ use super::staircase::staircase;
 use super::{page, staircase};
 use crate::comparison::Evaluated;
 use crate::explanation::{Candidate, Diagnosis, UNSUITABLE_BASE};
-use crate::text::words;
+use crate::text::{joined, words};
 
 /// Number of candidates that are shown as bars, and in the unfolded table.
 const BARS: usize = 8;
@@ -88,24 +88,9 @@ fn bars(shown: &Diagnosis) -> Vec<staircase::Step> {
 
 fn candidates(candidates: &[Candidate]) -> Markup {
     let row = |candidate: &Candidate| {
-        let parameters: Vec<String> = candidate
-            .parameters
-            .iter()
-            .map(ToString::to_string)
-            .collect();
-        let others = &candidate.indistinguishable;
-        let name = if others.is_empty() {
-            candidate.name()
-        } else {
-            format!(
-                "{}\nnot to be told from {}",
-                candidate.name(),
-                others.join(", ")
-            )
-        };
-        vec![
-            name,
-            parameters.join("\n"),
+        [
+            page::with_twins(candidate.name(), &candidate.indistinguishable),
+            joined(&candidate.parameters, "\n"),
             format!("{:.1} %", 100.0 * candidate.explains),
             format!("{:.2}", candidate.error_after),
             words::probable(candidate.confidence),
@@ -120,7 +105,7 @@ fn candidates(candidates: &[Candidate]) -> Markup {
         "confidence",
         "detectability",
     ];
-    let rows: Vec<Vec<String>> = candidates.iter().map(row).collect();
+    let rows: Vec<_> = candidates.iter().map(row).collect();
     let (first, others) = rows.split_at(BARS.min(rows.len()));
     html! {
         (page::table(&header, first))

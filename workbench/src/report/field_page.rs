@@ -15,15 +15,10 @@ const EVERY: usize = 20;
 /// The whole page.
 #[must_use]
 pub fn page(scenario: &str, model: &Model, calibration: &str, run: &FieldRun) -> String {
-    let rows: Vec<Vec<String>> = run
-        .figures
-        .iter()
-        .map(|figure| row(figure).to_vec())
-        .collect();
     let content = html! {
         h1 { "Scenario " (scenario) " on " (model.name) }
         p { "Calibration: " (calibration) ", with pins, slip guard and ride damping fitted." }
-        (page::table(&HEADER, &rows))
+        (page::table(&HEADER, run.figures.iter().map(row)))
         h2 { "Course" }
         (course(run))
     };

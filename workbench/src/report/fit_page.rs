@@ -75,12 +75,12 @@ fn sections(shown: &Shown<'_>) -> Markup {
         }
         (page::table(
             &["valve and current, A", "declared, l/min", "fitted, l/min", "95 % interval, l/min", "determined"],
-            &told.curves.iter().map(point).collect::<Vec<_>>(),
+            told.curves.iter().map(point),
         ))
         h2 { "Constants" }
         (page::table(
             &["constant", "unit", "declared", "tolerance, ±1 σ", "fitted", "95 % interval", "determined", "moved"],
-            &told.constants.iter().map(constant).collect::<Vec<_>>(),
+            told.constants.iter().map(constant),
         ))
         p.note {
             "Tolerance: that of data sheets, the prior of the fit. A constant that the campaign does not determine keeps its \

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use super::chart::{Band, Chart, Line, Stroke};
 use crate::explanation::Suggested;
-use crate::text::known;
+use crate::text::{joined, known};
 
 /// Residuals of the worst channel over a signal: mean and scatter of every bin.
 pub fn picture(profile: &ErrorProfile) -> Markup {
@@ -60,10 +60,9 @@ fn axis_title(signal: Signal) -> &'static str {
 
 /// A suggested term, as text for a model file.
 pub fn suggestion(term: &Suggested) -> Markup {
-    let parameters: Vec<String> = term.parameters.iter().map(ToString::to_string).collect();
     html! {
         h3 { "Suggested term" }
-        p { code { (term.place) " = " (term.formula) } ", " (parameters.join(", ")) }
+        p { code { (term.place) " = " (term.formula) } ", " (joined(&term.parameters, ", ")) }
         p {
             "It reduces the error on held-out runs from "
             strong { (known(term.held_out_before, 2)) } " to "
