@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use hitch_campaign::{Bench, Run};
 
-use super::loop_::{load_kg, temperature_c};
+use crate::arguments::number::{LOADS_KG, OIL_C, number};
 use crate::error::Error;
 use crate::import::run_block::RunBlock;
 use crate::output;
@@ -31,13 +31,13 @@ pub struct Args {
     #[arg(long, value_name = "CAMPAIGN")]
     out: PathBuf,
     /// Load at the hitch, kg
-    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = load_kg)]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = number(LOADS_KG))]
     load: f64,
     /// Oil temperature, C
-    #[arg(long, value_name = "C", allow_negative_numbers = true, value_parser = temperature_c)]
+    #[arg(long, value_name = "C", allow_negative_numbers = true, value_parser = number(OIL_C))]
     temperature: f64,
     /// Duration, s
-    #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value = "30", value_parser = number(0.1..=3_600.0))]
     seconds: f64,
 }
 
@@ -110,11 +110,4 @@ fn log(rows: &[Row]) -> String {
         let _ = writeln!(text, "{time_s:.3},{}", joined(values, ","));
     }
     text
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (0.1..=3_600.0).contains(&seconds) => Ok(seconds),
-        _ => Err("it has to be a number from 0.1 to 3600".to_owned()),
-    }
 }

@@ -1,5 +1,7 @@
 //! An explanation with its model and campaign.
 
+use std::path::PathBuf;
+
 use hitch_identification::adequacy::localization::ErrorProfile;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
@@ -11,6 +13,8 @@ use hitch_identification::suggestion::{Suggestion, suggest};
 use hitch_plant::{AddedEffect, Effect, Model, full_name, is_same};
 
 use super::{Explanation, rebuilt};
+use crate::error::Error;
+use crate::output;
 use crate::output::progress::Progress;
 use crate::text::{joined, significant};
 
@@ -99,6 +103,16 @@ impl Found {
             model.terms.push(suggestion.term);
         }
         model
+    }
+
+    /// Writes [`Found::rebuilt`] to a file, if there is one; the file names it.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_model(&self, path: Option<&PathBuf>) -> Result<(), Error> {
+        let model = |path: &PathBuf| self.rebuilt(output::stem(path));
+        let text = path.map(model).as_ref().map(hitch_model_file::to_toml);
+        output::write_if(path, || text.unwrap_or_default())
     }
 }
 

@@ -125,10 +125,10 @@ fn channel_data(view: &ChannelView) -> RunChannel<Column> {
         unit: view.channel.unit(),
         error: last.error,
         measured: samples(&view.measured),
-        simulated: samples(&last.samples),
-        residual: column(&last.residuals, RESIDUAL),
-        first: first.map(|first| samples(&first.samples)),
-        first_residual: first.map(|first| column(&first.residuals, RESIDUAL)),
+        simulated: samples(&last.simulated),
+        residual: column(&last.residual, RESIDUAL),
+        first: first.map(|first| samples(&first.simulated)),
+        first_residual: first.map(|first| column(&first.residual, RESIDUAL)),
         second: None,
     }
 }
@@ -144,10 +144,10 @@ fn figure(view: &RunView, channel: &ChannelView) -> Markup {
     let before = &channel.before;
     let mut error = format!("{:.2}", before.error);
     match &channel.after {
-        None => lines.push(line("simulated", Stroke::After, &before.samples)),
+        None => lines.push(line("simulated", Stroke::After, &before.simulated)),
         Some(after) => {
-            lines.push(line("before", Stroke::Before, &before.samples));
-            lines.push(line("after", Stroke::After, &after.samples));
+            lines.push(line("before", Stroke::Before, &before.simulated));
+            lines.push(line("after", Stroke::After, &after.simulated));
             error += &format!(" → {:.2}", after.error);
         }
     }
@@ -169,7 +169,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     use super::*;
-    use crate::report::run_view::Simulated;
+    use crate::web::plot::SimulatedChannel;
 
     /// A run of 30 s at 50 Hz with four channels, noise, and simulations of two models.
     fn long_run(random: &mut Pcg64, index: usize) -> RunView {
@@ -185,9 +185,9 @@ mod tests {
             curve.into_iter().map(value).collect()
         };
         let channel = |channel| {
-            let mut simulated = |size: f64| Simulated {
-                samples: curve(size),
-                residuals: noisy(vec![0.0; time_s.len()], 1.0),
+            let mut simulated = |size: f64| SimulatedChannel {
+                simulated: curve(size),
+                residual: noisy(vec![0.0; time_s.len()], 1.0),
                 error: 1.0,
             };
             let (before, after) = (simulated(20.0), Some(simulated(22.0)));
