@@ -49,6 +49,11 @@ impl Evaluated {
         }
     }
 
+    /// The same of a fit and a campaign that are kept.
+    pub fn of(experiment: &Experiment, fit: &Fit, model: &Model) -> Self {
+        Self::fitted(Arc::new(experiment.clone()), fit.clone(), model)
+    }
+
     /// Whitened residuals of a channel of a run, NaN where not compared.
     pub fn residuals(&self, run: usize, channel: Channel) -> Vec<f64> {
         let samples = self.experiment.runs[run].len();

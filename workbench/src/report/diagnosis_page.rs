@@ -1,7 +1,5 @@
 //! The report of `hitch diagnose`.
 
-use std::sync::Arc;
-
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::diagnosis;
@@ -10,11 +8,9 @@ use hitch_identification::selection::evidence::SIGNIFICANT;
 use hitch_plant::Model;
 use maud::{Markup, html};
 
-use super::error_map::error_map;
+use super::evidence::evidence;
 use super::explanation_page::channels;
 use super::next_figure::next_figure;
-use super::run_views::run_views;
-use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
 use crate::comparison::Evaluated;
@@ -35,7 +31,7 @@ pub fn page(
         "Single effects that {} may lack on {}",
         shown.head.model, shown.head.campaign
     );
-    let evaluated = |fit: &Fit| Evaluated::fitted(Arc::new(experiment.clone()), fit.clone(), model);
+    let evaluated = |fit: &Fit| Evaluated::of(experiment, fit, model);
     let before = evaluated(&found.base);
     let accepted = |best: &&candidate::Candidate| best.likelihood_ratio >= SIGNIFICANT;
     let after = found.candidates.first().filter(accepted);
@@ -48,9 +44,7 @@ pub fn page(
         (staircase(&bars(shown)))
         (candidates(&shown.candidates))
         (next_figure(&shown.next))
-        (error_map(before, after))
-        h2 { "Measured against simulated" }
-        (runs(&run_views(before, after)))
+        (evidence(before, after))
         h2 { "By channel" }
         (channels(&shown.head))
     };

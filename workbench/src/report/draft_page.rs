@@ -3,8 +3,8 @@
 use hitch_draft::block::Block;
 use maud::{Markup, html};
 
-use super::chart::Stroke;
-use super::drawn::{Drawn, Points, drawn};
+use super::chart::{Chart, Points, Stroke};
+use super::drawn::drawn;
 use super::page;
 use crate::draft::DraftResult;
 
@@ -67,7 +67,7 @@ fn charts(result: &DraftResult) -> Markup {
         };
         let measured: Points = group.iter().flat_map(bar).unzip();
         let line = |name: &str, stroke, points| (name.to_owned(), stroke, points);
-        Drawn {
+        Chart {
             caption: format!("Draft at {depth_cm:.0} cm"),
             axes: ["speed, km/h", "draft, kN"],
             lines: vec![
@@ -87,7 +87,7 @@ fn charts(result: &DraftResult) -> Markup {
             ],
         }
     };
-    let charts: Vec<Drawn> = groups.map(chart).collect();
+    let charts: Vec<Chart<'static>> = groups.map(chart).collect();
     drawn("Draft over speed by depth", &charts)
 }
 

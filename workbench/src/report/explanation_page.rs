@@ -1,15 +1,11 @@
 //! The report of `hitch explain`.
 
-use std::sync::Arc;
-
 use hitch_identification::estimation::fit::Fit;
 use maud::{Markup, html};
 
-use super::error_map::error_map;
+use super::evidence::evidence;
 use super::next_figure::next_figure;
 use super::rest_figure::{picture, suggestion};
-use super::run_views::run_views;
-use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
 use crate::base_model::fit::ShownConstant;
@@ -45,13 +41,7 @@ pub fn findings(found: &Found) -> Markup {
 
 /// The evidence: error map, all runs, and errors by channel.
 pub fn details(found: &Found) -> Markup {
-    let evaluated = |fit: &Fit| {
-        Evaluated::fitted(
-            Arc::new(found.experiment.clone()),
-            fit.clone(),
-            &found.model,
-        )
-    };
+    let evaluated = |fit: &Fit| Evaluated::of(&found.experiment, fit, &found.model);
     let (before, after) = (
         evaluated(&found.explanation.before),
         evaluated(&found.explanation.after),
@@ -60,9 +50,7 @@ pub fn details(found: &Found) -> Markup {
     let changed = is_changed.then_some((&found.model, &after));
     let before = (&found.model, &before);
     html! {
-        (error_map(before, changed))
-        h2 { "Measured against simulated" }
-        (runs(&run_views(before, changed)))
+        (evidence(before, changed))
         h2 { "By channel" }
         (channels(&found.shown.head))
     }

@@ -3,8 +3,8 @@
 use hitch_quantities::calibration::valve_table::{ValvePoint, ValveTable};
 use maud::{Markup, html};
 
-use super::chart::Stroke;
-use super::drawn::{Drawn, drawn};
+use super::chart::{Chart, Stroke};
+use super::drawn::drawn;
 use super::page;
 use super::same_move::compared;
 use crate::closed_loop::MoveResult;
@@ -46,7 +46,7 @@ fn valve_maps(rebuild: &Rebuild) -> Markup {
             &rebuild.rebuilt.lower,
         ),
     ];
-    let maps = maps.map(|(caption, nominal, rebuilt)| Drawn {
+    let maps = maps.map(|(caption, nominal, rebuilt)| Chart {
         caption: caption.to_owned(),
         axes: ["current, A", "flow, l/min"],
         lines: vec![

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::chart::{Chart, Line, Stroke, legend};
+use super::chart::{Chart, Stroke, legend};
 use super::columns::{Column, TIME_S, column, plotted_column};
 use super::data::Data;
 use super::envelope::envelope;
@@ -134,11 +134,8 @@ fn channel_data(view: &ChannelView) -> RunChannel<Column> {
 }
 
 fn figure(view: &RunView, channel: &ChannelView) -> Markup {
-    let line = |name, stroke, y| Line {
-        name,
-        stroke,
-        x: &view.time_s,
-        y,
+    let line = |name: &str, stroke, y: &Vec<f64>| {
+        (name.to_owned(), stroke, (view.time_s.clone(), y.clone()))
     };
     let mut lines = vec![line("measured", Stroke::Measured, &channel.measured)];
     let before = &channel.before;
@@ -154,9 +151,7 @@ fn figure(view: &RunView, channel: &ChannelView) -> Markup {
     let title = format!("{}, {}", channel.channel.title(), channel.channel.unit());
     Chart {
         caption: format!("{}: error {error} sigma", channel.channel.title()),
-        x_title: "time, s",
-        y_title: &title,
-        bands: Vec::new(),
+        axes: ["time, s", &title],
         lines,
     }
     .figure()

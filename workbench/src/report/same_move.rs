@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::chart::Stroke;
-use super::drawn::{Drawn, Points, drawn};
+use super::chart::{Chart, Points, Stroke};
+use super::drawn::drawn;
 use crate::closed_loop::show_variants::Named;
 use crate::closed_loop::{LoopRun, PressRun, PressTrace};
 use hitch_closed_loop::Sample;
@@ -21,28 +21,23 @@ pub fn compared(runs: Named<'_, LoopRun>, index: usize) -> Markup {
     let order = &first.results[index];
     let arrivals = runs.iter().map(|(_, run)| run.results[index].took_s());
     let end_s = arrivals.fold(0.0, f64::max) + AFTER_S;
-    let points = |run: &LoopRun, value: fn(&Sample) -> f64| -> Points {
-        let samples = run.traces[index].samples.iter();
-        let shown = samples.take_while(|sample| sample.time_s <= end_s);
-        shown.map(|sample| (sample.time_s, value(sample))).unzip()
-    };
     let each = |value: fn(&Sample) -> f64| {
         let runs = runs.iter().enumerate();
         runs.map(move |(place, (name, run))| {
             (
                 (*name).to_owned(),
                 Stroke::SERIES[place % Stroke::SERIES.len()],
-                points(run, value),
+                run.traces[index].points(end_s, value),
             )
         })
     };
     let set_point = (
         "set point".to_owned(),
         Stroke::Measured,
-        points(first, |sample| sample.lever_deg),
+        first.traces[index].points(end_s, |sample| sample.lever_deg),
     );
     let charts = [
-        Drawn {
+        Chart {
             caption: "Rocker angle".to_owned(),
             axes: ["time, s", "angle, deg"],
             lines: [set_point]
@@ -50,7 +45,7 @@ pub fn compared(runs: Named<'_, LoopRun>, index: usize) -> Markup {
                 .chain(each(|sample| sample.angle_deg))
                 .collect(),
         },
-        Drawn {
+        Chart {
             caption: "Coil current".to_owned(),
             axes: ["time, s", "current, A"],
             lines: each(|sample| {
@@ -96,12 +91,12 @@ pub fn pressed(runs: Named<'_, PressRun>, index: usize) -> Markup {
     let requested = ("requested".to_owned(), Stroke::Measured, requested);
     let speeds = each(|trace| trace.speeds_deg_per_s(EVERY_MS));
     let charts = [
-        Drawn {
+        Chart {
             caption: "Speed of the rocker, mean over 100 ms".to_owned(),
             axes: ["time, s", "speed, deg/s"],
             lines: [requested].into_iter().chain(speeds).collect(),
         },
-        Drawn {
+        Chart {
             caption: "Rocker angle".to_owned(),
             axes: ["time, s", "angle, deg"],
             lines: each(|trace| {
