@@ -4,7 +4,7 @@ mod status_line;
 use std::io::BufRead;
 use std::net::SocketAddr;
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::time::Instant;
 use std::{io, thread};
@@ -87,7 +87,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let mut machine = runner.power_up(flash).map_err(failed)?;
     let result = session.run(&mut machine);
     let flash = machine.power_off().map_err(failed)?;
-    keep(args.flash.as_deref(), &flash)?;
+    let kept = args.flash.as_deref();
+    kept.map_or(Ok(()), |path| write_file(path, &flash))?;
     result
 }
 
@@ -122,10 +123,6 @@ fn flash_without_key(args: &Args) -> Result<Vec<u8>, Error> {
             path.display()
         ))),
     }
-}
-
-fn keep(path: Option<&Path>, flash: &[u8]) -> Result<(), Error> {
-    path.map_or(Ok(()), |path| write_file(path, flash))
 }
 
 fn open_slcan_server(address: &str) -> Result<SlcanServer, Error> {

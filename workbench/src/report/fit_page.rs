@@ -11,6 +11,7 @@ use super::chart::{Chart, Line, Points, Stroke};
 use super::drawn::drawn;
 use super::evidence::evidence;
 use super::page;
+use crate::base_model::data_sheet::VALVES;
 use crate::base_model::fit::{ShownBaseFit, ShownConstant, ShownPoint, digits};
 use crate::comparison::Evaluated;
 
@@ -58,7 +59,7 @@ fn sections(shown: &Shown<'_>) -> Markup {
              points. A point that the campaign does not determine follows its neighbours. Deviations are those of the points \
              beside the shift of the whole curve with its threshold."
         }
-        @for (valve, title) in [(Valve::Lift, "Lift valve"), (Valve::Lower, "Lowering valve")] {
+        @for (valve, title) in VALVES {
             h3 { (title) }
             (curve(shown, valve, title))
             (deviation(told, valve, title))

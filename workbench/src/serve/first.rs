@@ -9,7 +9,7 @@ use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_input::source_file::SourceFile;
 use hitch_model_file::Template;
-use hitch_plant::{Model, Valve};
+use hitch_plant::Model;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -17,24 +17,11 @@ use super::refusal::Refusal;
 use super::request::{Answer, Known, Of, blocking, done, find, idle, lock};
 use super::sessions::{Sessions, Shared};
 use crate::arguments::known_constants::{ConstantFault, KnownConstants};
-use crate::base_model::data_sheet::{self, QUESTIONS};
+use crate::base_model::data_sheet::{self, ENDS, QUESTIONS, VALVES};
 use crate::error::Error;
 
 /// Maximum size of a model file, bytes.
 pub const LARGEST_MODEL: usize = 1 << 20;
-
-/// The valves of a data sheet, with what each is called.
-const VALVES: [(Valve, &str); 2] = [
-    (Valve::Lift, "Lift valve"),
-    (Valve::Lower, "Lowering valve"),
-];
-
-/// What is asked of a valve, in the order of [`data_sheet::ends`].
-const ENDS: [(&str, &str); 3] = [
-    ("opens", "opening current, A"),
-    ("limit", "current limit, A"),
-    ("full", "flow at the current limit, l/min"),
-];
 
 /// All routes of the first model.
 pub fn routes() -> Router<Arc<Sessions>> {

@@ -1,6 +1,7 @@
 //! Traces of angle, currents and pressures: of all moves if they are few, else of the worst.
 use maud::{Markup, html};
 
+use super::worst::{FIGURES, Figure};
 use crate::closed_loop::show::name;
 use crate::closed_loop::{LoopRun, MoveResult, MoveTrace};
 use crate::report::chart::{Chart, Line, Stroke};
@@ -32,14 +33,8 @@ pub fn shown(results: &[MoveResult]) -> Vec<usize> {
     if results.len() <= MOST {
         return (0..results.len()).collect();
     }
-    let figures: [fn(&MoveResult) -> f64; 4] = [
-        |result| result.ratio,
-        |result| result.overshoot_deg,
-        |result| result.final_error_deg,
-        |result| result.pressure_swing_ratio,
-    ];
     let mut chosen = Vec::new();
-    for figure in figures {
+    for Figure { of: figure, .. } in FIGURES {
         let mut order: Vec<usize> = (0..results.len()).collect();
         order.sort_by(|&a, &b| figure(&results[b]).total_cmp(&figure(&results[a])));
         chosen.extend(order.into_iter().take(WORST));

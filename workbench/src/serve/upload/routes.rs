@@ -15,8 +15,8 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::assignment::Assignment;
-use super::folder::{Unacceptable, Upload, plain_name, too_much};
-use super::incoming::{Lost, receive};
+use super::folder::{Upload, plain_name, too_much};
+use super::incoming::receive;
 use super::limits::{LARGEST_ASSIGNMENT, LIFETIME, LONGEST, MOST_BYTES, MOST_FILES};
 use super::proposal::Proposal;
 use super::surveyed::Surveyed;
@@ -52,7 +52,7 @@ async fn begin(State(sessions): Known, Json(wanted): Json<Begin>) -> Answer {
         return Err(Refusal::wrong("there is no file".to_owned()));
     }
     if wanted.files > MOST_FILES || wanted.bytes > MOST_BYTES {
-        return Err(too_much().into());
+        return Err(too_much());
     }
     let upload = Arc::new(sessions.folders.begin()?);
     let id = upload.id.clone();
@@ -93,7 +93,7 @@ async fn file(
     let length = headers.get(header::CONTENT_LENGTH);
     let length: Option<u64> = length.and_then(|length| length.to_str().ok()?.parse().ok());
     if length.is_some_and(|length| length > MOST_BYTES) {
-        return Err(too_much().into());
+        return Err(too_much());
     }
     receive(&upload, name, body.into_data_stream(), LONGEST).await?;
     Ok(Json(json!({ "file": name })))
@@ -224,35 +224,5 @@ fn named(upload: &Upload, error: Error) -> Error {
         }),
         Error::Usage(text) => Error::Usage(within(&text)),
         other => other,
-    }
-}
-
-impl From<Unacceptable> for Refusal {
-    fn from(reason: Unacceptable) -> Self {
-        match reason {
-            Unacceptable::Name(what) => Self::wrong(what),
-            Unacceptable::TooMuch(what) => Self::of(StatusCode::PAYLOAD_TOO_LARGE, &what),
-        }
-    }
-}
-
-impl From<Lost> for Refusal {
-    fn from(lost: Lost) -> Self {
-        match lost {
-            Lost::Unacceptable(reason) => reason.into(),
-            Lost::Late => {
-                let seconds = LONGEST.as_secs();
-                let what = format!("the file was not received within {seconds} s; try it again");
-                Self::of(StatusCode::REQUEST_TIMEOUT, &what)
-            }
-            Lost::Broken(why) => {
-                let what = format!("the file was not received: {why}");
-                Self::of(StatusCode::BAD_REQUEST, &what)
-            }
-            Lost::Disk(why) => {
-                let what = format!("the file cannot be stored: {why}; make room on the disk");
-                Self::of(StatusCode::INSUFFICIENT_STORAGE, &what)
-            }
-        }
     }
 }
