@@ -56,6 +56,18 @@ pub fn parsed(name: &str, bytes: &[u8]) -> Result<Model, Error> {
     Ok(hitch_model_file::parse(&SourceFile::of(path, bytes)?)?)
 }
 
+/// The model of a template; `what` makes it.
+///
+/// # Errors
+/// If it is no model.
+pub fn made(what: &str, template: &Template, name: &str) -> Result<Model, Error> {
+    let text = template.text().map_err(|error| {
+        let (fault, hint) = (error.what, error.hint);
+        Error::Usage(format!("{what} no machine: {fault}; {hint}"))
+    })?;
+    parsed(name, text.as_bytes())
+}
+
 /// A model of the program.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -161,13 +173,7 @@ impl Answers {
                 template.set_curve(valve, curve);
             }
         }
-        let text = template.text().map_err(|error| {
-            Error::Usage(format!(
-                "the values make no machine: {}; {}",
-                error.what, error.hint
-            ))
-        })?;
-        parsed(name, text.as_bytes())
+        made("the values make", &template, name)
     }
 }
 

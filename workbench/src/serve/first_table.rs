@@ -13,7 +13,7 @@ use hitch_plant::{Model, Valve};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::first::{LARGEST_MODEL, exchange, parsed};
+use super::first::{LARGEST_MODEL, exchange, made};
 use super::request::{Answer, Known, blocking, find, lock};
 use super::sessions::Sessions;
 use crate::base_model::{flow_curve, linkage_table};
@@ -102,13 +102,8 @@ fn with_table(
             )
         }
     };
-    let text = template.text().map_err(|error| {
-        Error::Usage(format!(
-            "{name} makes no machine: {}; {}",
-            error.what, error.hint
-        ))
-    })?;
-    Ok((parsed(&before.name, text.as_bytes())?, said))
+    let model = made(&format!("{name} makes"), &template, &before.name)?;
+    Ok((model, said))
 }
 
 #[cfg(test)]
