@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
-use axum::extract::{DefaultBodyLimit, Query, State};
+use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_input::source_file::SourceFile;
@@ -14,7 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::refusal::Refusal;
-use super::request::{Answer, Known, Of, blocking, done, find, idle, lock};
+use super::request::{Answer, InBody, InQuery, blocking, done, idle, lock};
 use super::sessions::{Sessions, Shared};
 use crate::arguments::known_constants::{ConstantFault, KnownConstants};
 use crate::base_model::data_sheet::{self, ENDS, QUESTIONS, VALVES};
@@ -37,12 +37,10 @@ pub fn routes() -> Router<Arc<Sessions>> {
 /// A model file for a session.
 #[derive(Debug, Deserialize)]
 pub(super) struct OfFile {
-    pub session: String,
     pub name: String,
 }
 
-async fn file(State(sessions): Known, Query(of): Query<OfFile>, body: Bytes) -> Answer {
-    let session = find(&sessions, &of.session)?;
+async fn file(InQuery(session, of): InQuery<OfFile>, body: Bytes) -> Answer {
     let model = blocking(move || parsed(&of.name, &body)).await??;
     exchange(session, model).await
 }
@@ -78,12 +76,10 @@ enum StartingPoint {
 
 #[derive(Debug, Deserialize)]
 struct Named {
-    session: String,
     name: StartingPoint,
 }
 
-async fn named(State(sessions): Known, Json(wanted): Json<Named>) -> Answer {
-    let session = find(&sessions, &wanted.session)?;
+async fn named(InBody(session, wanted): InBody<Named>) -> Answer {
     let model = match wanted.name {
         StartingPoint::Nominal => hitch_model_file::nominal(),
         StartingPoint::Dynamic => hitch_model_file::dynamic(),
@@ -110,8 +106,7 @@ struct Question {
 }
 
 /// The questions of data sheets, with the values of the first model.
-async fn sheet(State(sessions): Known, Query(of): Query<Of>) -> Answer<Sheet> {
-    let session = find(&sessions, &of.session)?;
+async fn sheet(InQuery(session, _): InQuery) -> Answer<Sheet> {
     let model = lock(&session).subject().model.clone();
     let template = Template::of(&model.name, &model);
     let constant = |(name, question): &(&str, &str)| {
@@ -138,13 +133,11 @@ async fn sheet(State(sessions): Known, Query(of): Query<Of>) -> Answer<Sheet> {
 /// The answers to changed questions, in the order of the questions.
 #[derive(Debug, Deserialize)]
 struct Answers {
-    session: String,
     name: String,
     values: Vec<(String, String)>,
 }
 
-async fn from_sheet(State(sessions): Known, Json(answers): Json<Answers>) -> Answer {
-    let session = find(&sessions, &answers.session)?;
+async fn from_sheet(InBody(session, answers): InBody<Answers>) -> Answer {
     let before = lock(&session).subject().model.clone();
     let model = blocking(move || answers.model(&before)).await??;
     exchange(session, model).await
@@ -188,7 +181,6 @@ fn end(name: &str) -> Option<(usize, usize)> {
 /// What is known of constants, to look at.
 #[derive(Debug, Deserialize)]
 struct Draft {
-    session: String,
     known: KnownConstants,
 }
 
@@ -200,15 +192,13 @@ pub(super) struct CheckedConstants {
 }
 
 /// What is wrong with what is known of constants of the present model.
-async fn known(State(sessions): Known, Json(draft): Json<Draft>) -> Answer<CheckedConstants> {
-    let session = find(&sessions, &draft.session)?;
+async fn known(InBody(session, draft): InBody<Draft>) -> Answer<CheckedConstants> {
     let model = lock(&session).rebuilt();
     let faults = blocking(move || draft.known.faults(&model)).await?;
     Ok(Json(CheckedConstants { faults }))
 }
 
-async fn back(State(sessions): Known, Json(of): Json<Of>) -> Answer {
-    let session = find(&sessions, &of.session)?;
+async fn back(InBody(session, _): InBody) -> Answer {
     let mut open = lock(&session);
     idle(&open)?;
     if open.back() {

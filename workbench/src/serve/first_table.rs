@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
-use axum::extract::{DefaultBodyLimit, Query, State};
+use axum::extract::DefaultBodyLimit;
 use axum::routing::post;
 use axum::{Json, Router};
 use hitch_input::source_file::SourceFile;
@@ -14,7 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::first::{LARGEST_MODEL, exchange, made};
-use super::request::{Answer, Known, blocking, find, lock};
+use super::request::{Answer, InQuery, blocking, lock};
 use super::sessions::Sessions;
 use crate::base_model::{flow_curve, linkage_table};
 use crate::error::Error;
@@ -39,7 +39,6 @@ enum Subject {
 
 #[derive(Debug, Deserialize)]
 struct OfTable {
-    session: String,
     name: String,
     of: Subject,
 }
@@ -51,12 +50,7 @@ pub(super) struct TakenTable {
     said: String,
 }
 
-async fn table(
-    State(sessions): Known,
-    Query(asked): Query<OfTable>,
-    body: Bytes,
-) -> Answer<TakenTable> {
-    let session = find(&sessions, &asked.session)?;
+async fn table(InQuery(session, asked): InQuery<OfTable>, body: Bytes) -> Answer<TakenTable> {
     let before = lock(&session).subject().model.clone();
     let read = move || with_table(&before, asked.of, &asked.name, &body);
     let (model, said) = blocking(read).await??;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::{Arc, PoisonError};
 
 use axum::body::Body;
-use axum::extract::{DefaultBodyLimit, Query, State};
+use axum::extract::{DefaultBodyLimit, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::routing::post;
 use axum::{Json, Router};
@@ -22,7 +22,7 @@ use super::proposal::Proposal;
 use super::surveyed::Surveyed;
 use crate::error::Error;
 use crate::serve::refusal::Refusal;
-use crate::serve::request::{Answer, Known, Of, blocking, done, find, idle, lock};
+use crate::serve::request::{Answer, InBody, InQuery, Known, blocking, done, idle, lock};
 use crate::serve::sessions::{Sessions, Shared};
 use crate::serve::source::{Origin, Subject};
 
@@ -40,14 +40,12 @@ pub fn routes() -> Router<Arc<Sessions>> {
 /// Number and size of the files to come.
 #[derive(Debug, Deserialize)]
 struct Begin {
-    session: String,
     files: usize,
     bytes: u64,
 }
 
 /// Starts an upload; deletes the files of an earlier one.
-async fn begin(State(sessions): Known, Json(wanted): Json<Begin>) -> Answer {
-    let session = find(&sessions, &wanted.session)?;
+async fn begin(State(sessions): Known, InBody(session, wanted): InBody<Begin>) -> Answer {
     if wanted.files == 0 {
         return Err(Refusal::wrong("there is no file".to_owned()));
     }
@@ -70,25 +68,18 @@ async fn begin(State(sessions): Known, Json(wanted): Json<Begin>) -> Answer {
 /// An upload of a tab.
 #[derive(Debug, Deserialize)]
 struct OfUpload {
-    session: String,
     upload: String,
 }
 
 /// A file of an upload.
 #[derive(Debug, Deserialize)]
 struct OfFile {
-    session: String,
     upload: String,
     name: String,
 }
 
-async fn file(
-    State(sessions): Known,
-    Query(of): Query<OfFile>,
-    headers: HeaderMap,
-    body: Body,
-) -> Answer {
-    let upload = upload(&find(&sessions, &of.session)?, &of.upload)?;
+async fn file(InQuery(session, of): InQuery<OfFile>, headers: HeaderMap, body: Body) -> Answer {
+    let upload = upload(&session, &of.upload)?;
     let name = plain_name(&of.name)?;
     let length = headers.get(header::CONTENT_LENGTH);
     let length: Option<u64> = length.and_then(|length| length.to_str().ok()?.parse().ok());
@@ -100,8 +91,7 @@ async fn file(
 }
 
 /// The proposed assignment.
-async fn survey(State(sessions): Known, Json(of): Json<OfUpload>) -> Answer<Surveyed> {
-    let session = find(&sessions, &of.session)?;
+async fn survey(InBody(session, of): InBody<OfUpload>) -> Answer<Surveyed> {
     let upload = upload(&session, &of.upload)?;
     let subject = Arc::clone(lock(&session).subject());
     let view = blocking(move || {
@@ -121,15 +111,14 @@ async fn survey(State(sessions): Known, Json(of): Json<OfUpload>) -> Answer<Surv
 }
 
 /// Deletes the files.
-async fn discard(State(sessions): Known, Json(of): Json<Of>) -> Answer {
-    lock(&find(&sessions, &of.session)?).upload = None;
+async fn discard(InBody(session, _): InBody) -> Answer {
+    lock(&session).upload = None;
     done()
 }
 
 /// The edited assignment of an upload.
 #[derive(Debug, Deserialize)]
 struct Open {
-    session: String,
     upload: String,
     #[serde(flatten)]
     assignment: Assignment,
@@ -165,8 +154,7 @@ impl Origin for Opened {
 }
 
 /// Opens the campaign in the session. Answers which logs are joined, split or cut.
-async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
-    let session = find(&sessions, &wanted.session)?;
+async fn open(InBody(session, wanted): InBody<Open>) -> Answer {
     let upload = upload(&session, &wanted.upload)?;
     let model = {
         let session = lock(&session);
