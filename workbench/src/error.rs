@@ -1,7 +1,7 @@
 //! Errors of the program, and their exit codes.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use hitch_closed_loop::driven::MachineError;
@@ -42,6 +42,14 @@ impl From<MachineError> for Error {
 }
 
 impl Error {
+    /// A file that could not be written, for its cause.
+    pub fn writing(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |source| Self::Write {
+            path: path.to_path_buf(),
+            source,
+        }
+    }
+
     /// 2 for invalid usage or input, 1 for other errors.
     ///
     /// A closed pipe (`hitch effects | head -1`) is not an error: 0.

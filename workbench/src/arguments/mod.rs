@@ -7,5 +7,6 @@ mod interruption;
 pub mod known_constants;
 pub mod model;
 pub mod next_command;
+pub mod number;
 pub mod search;
 pub mod tolerances;

@@ -1,6 +1,6 @@
 //! The option `--model`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use hitch_campaign::Campaign;
 use hitch_identification::explanation::starting_point::StartingPoint;
@@ -57,18 +57,8 @@ impl ModelArg {
         Ok(hitch_model_file::named(self.name())?)
     }
 
-    /// Reads the model and a campaign to search with it. A model without effects, as of a data sheet, gets the form that is
-    /// nearer to the campaign: statics or dynamics. A note states it. Any other model in the wrong form gets a warning.
-    ///
-    /// # Errors
-    /// If the model or the campaign is invalid.
-    pub fn load_for(&self, folder: &Path) -> Result<(Model, Campaign), Error> {
-        let model = self.load()?;
-        let campaign = Campaign::load_with(folder, model.linkage())?;
-        Ok((self.nearer(model, &campaign), campaign))
-    }
-
-    /// The model in the form that is nearer to a campaign, as for [`ModelArg::load_for`].
+    /// The model to search a campaign with. A model without effects, as of a data sheet, gets the form that is nearer to the
+    /// campaign: statics or dynamics. A note states it. Any other model in the wrong form gets a warning.
     #[must_use]
     pub fn nearer(&self, model: Model, campaign: &Campaign) -> Model {
         let start = StartingPoint::new(campaign, &model, self.other_form(&model));

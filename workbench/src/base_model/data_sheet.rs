@@ -1,7 +1,7 @@
 //! What a model needs from data sheets: the questions of `hitch model new`, and of the page.
 
-use hitch_plant::ValveCurve;
 use hitch_plant::units::lpm_from_m3_s;
+use hitch_plant::{Valve, ValveCurve};
 
 /// Questions: constant and text.
 pub const QUESTIONS: [(&str, &str); 18] = [
@@ -50,6 +50,19 @@ pub const QUESTIONS: [(&str, &str); 18] = [
         "sensors.pump_pressure_noise_bar",
         "Noise of the pump pressure sensor, one sigma, bar",
     ),
+];
+
+/// The valves, with what each is called.
+pub const VALVES: [(Valve, &str); 2] = [
+    (Valve::Lift, "Lift valve"),
+    (Valve::Lower, "Lowering valve"),
+];
+
+/// What is asked of a valve, in the order of [`ends`]: key and text.
+pub const ENDS: [(&str, &str); 3] = [
+    ("opens", "opening current, A"),
+    ("limit", "current limit, A"),
+    ("full", "flow at the current limit, l/min"),
 ];
 
 /// Current at which a valve opens, A, its current limit, A, and its flow there, l/min.

@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::text::colour::by_sigma;
-use crate::text::{Table, wrapped};
+use crate::text::{Table, joined, wrapped};
 
 /// Result of `hitch model fit`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
@@ -193,21 +193,14 @@ impl fmt::Display for ShownBaseFit {
             by_sigma(&format!("{:.2}", self.error_after), self.error_after)
         );
         writeln!(f, "{}\n", wrapped(&head))?;
-        let mut table = Table::new(ShownConstant::HEADINGS);
-        for constant in self.constants.iter().filter(|constant| constant.determined) {
-            table.row(constant.cells());
-        }
-        writeln!(f, "{table}")?;
-        let mut table = Table::new([
-            "valve",
-            "A",
-            "declared l/min",
-            "fitted",
-            "95 % interval",
-            "",
-        ]);
-        for point in &self.curves {
-            table.row([
+        let (determined, unknown): (Vec<&ShownConstant>, Vec<&ShownConstant>) = self
+            .constants
+            .iter()
+            .partition(|constant| constant.determined);
+        let constants = determined.into_iter().map(ShownConstant::cells);
+        writeln!(f, "{}", Table::of(ShownConstant::HEADINGS, constants))?;
+        let point = |point: &ShownPoint| {
+            [
                 point.valve.to_owned(),
                 format!("{:.3}", point.current_a),
                 digits(point.declared_lpm),
@@ -218,18 +211,21 @@ impl fmt::Display for ShownBaseFit {
                 } else {
                     "interpolated from neighbours".to_owned()
                 },
-            ]);
-        }
-        writeln!(f, "{table}")?;
-        let unknown = self
-            .constants
-            .iter()
-            .filter(|constant| !constant.determined);
-        let unknown: Vec<&str> = unknown.map(|constant| constant.name.as_str()).collect();
+            ]
+        };
+        let header = [
+            "valve",
+            "A",
+            "declared l/min",
+            "fitted",
+            "95 % interval",
+            "",
+        ];
+        writeln!(f, "{}", Table::of(header, self.curves.iter().map(point)))?;
         if !unknown.is_empty() {
             let line = format!(
                 "Not determined by this campaign, declared value kept: {}.",
-                unknown.join(", ")
+                joined(unknown.iter().map(|constant| &constant.name), ", ")
             );
             writeln!(f, "{}", wrapped(&line))?;
         }

@@ -36,6 +36,16 @@ pub struct MoveTrace {
     pub fault: Option<Fault>,
 }
 
+impl MoveTrace {
+    /// Times, s, and a value of the samples until a time, s.
+    #[must_use]
+    pub fn points(&self, end_s: f64, value: fn(&Sample) -> f64) -> (Vec<f64>, Vec<f64>) {
+        let samples = self.samples.iter();
+        let shown = samples.take_while(|sample| sample.time_s <= end_s);
+        shown.map(|sample| (sample.time_s, value(sample))).unzip()
+    }
+}
+
 /// A set of moves.
 #[derive(Debug, Clone)]
 pub struct LoopRun {

@@ -2,7 +2,7 @@
 
 use super::metrics::{MoveResult, Summary};
 use super::rate::{PressResult, PressSummary};
-use crate::text::{Table, known, wrapped};
+use crate::text::{Table, joined, known, wrapped};
 
 /// Header of the table of moves, for terminal and report.
 pub const HEADER: [&str; 9] = [
@@ -50,13 +50,9 @@ pub fn row(result: &MoveResult) -> [String; 9] {
 /// The figures as a table for a terminal.
 #[must_use]
 pub fn text(moves: &[MoveResult], summary: &Summary) -> String {
-    let mut table = Table::new(HEADER);
-    for result in moves {
-        table.row(row(result));
-    }
+    let table = Table::of(HEADER, moves.iter().map(row));
     let lines = summed_up(summary);
-    let lines: Vec<String> = lines.lines().map(wrapped).collect();
-    format!("{table}\n{}\n", lines.join("\n"))
+    format!("{table}\n{}\n", joined(lines.lines().map(wrapped), "\n"))
 }
 
 /// Presses of the external button as a table for a terminal, with the worst figures.

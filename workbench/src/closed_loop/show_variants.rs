@@ -68,11 +68,8 @@ impl Sides {
     }
 
     fn text(&self) -> String {
-        let mut table = Table::new(self.header.iter().map(String::as_str));
-        for row in &self.rows {
-            table.row(row.clone());
-        }
-        table.to_string()
+        let header = self.header.iter().map(String::as_str);
+        Table::of(header, self.rows.iter().cloned()).to_string()
     }
 }
 

@@ -21,7 +21,7 @@ use crate::explanation::{Base, Posed, UNSUITABLE_BASE, parameters, rebuilt};
 use crate::output;
 use crate::output::progress::Progress;
 use crate::output::targets::{Outputs, campaign_files};
-use crate::text::{indented, wrapped};
+use crate::text::{indented, joined, wrapped};
 
 /// Arguments of `hitch add`.
 #[derive(Debug, clap::Args)]
@@ -134,11 +134,10 @@ fn effects(ids: &[String], model: &Model) -> Result<Vec<&'static dyn Effect>, Er
 fn shown(effect: &LeaveOneOut) -> String {
     let candidate = &effect.candidate;
     let parameters = parameters(candidate.effect, candidate.values(), &candidate.intervals);
-    let parameters: Vec<String> = parameters.iter().map(ToString::to_string).collect();
     let line = format!(
         "+ {}: {}; error {:.2} sigma without it",
         full_name(candidate.effect),
-        parameters.join(", "),
+        joined(parameters, ", "),
         effect.without.error()
     );
     if candidate.likelihood_ratio < SIGNIFICANT {

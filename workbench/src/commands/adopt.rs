@@ -65,11 +65,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
         ..args.search.options()
     };
     let found = Found::new(experiment, model, options, &improved);
-    let adopted = found.rebuilt(output::stem(&args.out));
-    output::write_file(&args.out, hitch_model_file::to_toml(&adopted).as_bytes())?;
-    if let Some(path) = &args.report {
-        output::write_file(path, explanation_page::page(&found).as_bytes())?;
-    }
+    found.write_model(Some(&args.out))?;
+    output::write_if(args.report.as_ref(), || explanation_page::page(&found))?;
     outputs.tell(&args.json, &found.shown, || {
         let next = format!(
             "Next, after a change: hitch explain NEW --model {} --baseline {}",

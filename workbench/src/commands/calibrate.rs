@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 
 use hitch_controller_host::calibration_file;
-use hitch_quantities::Calibration;
 use hitch_quantities::calibration::valve_table::ValveTable;
 
-use super::loop_::read_files;
+use super::loop_::{calibration, read_files};
 use crate::draft::read_working;
 use crate::error::Error;
 use crate::output;
@@ -46,10 +45,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     inputs.extend(args.draft.clone());
     let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
     let model = hitch_model_file::named(&args.model)?;
-    let base = match &args.calibration {
-        Some(path) => (*calibration_file::read(path)?).clone(),
-        None => Calibration::nominal(),
-    };
+    let base = calibration(args.calibration.as_ref())?;
     let refused = |error| Error::Usage(format!("{}: {error}", args.model));
     let mut calibration = calibrate(&model, &base).map_err(refused)?;
     let mut of_draft = Vec::new();

@@ -115,16 +115,10 @@ fn one(args: &Args, new: &Path) -> Result<(), Error> {
     let options = args.search.options();
     let adopted = Adopted::new(&baseline, &model, options, &progress(&baseline));
     let (changes, new) = adopted.changes(&new, args.search.options(), &progress(&new));
-    if let Some(path) = &args.out {
-        output::write_file(
-            path,
-            hitch_model_file::to_toml(&new.rebuilt(output::stem(path))).as_bytes(),
-        )?;
-    }
-    if let Some(path) = &args.report {
-        let page = changes_page::page(&changes.baseline, &new);
-        output::write_file(path, page.as_bytes())?;
-    }
+    new.write_model(args.out.as_ref())?;
+    output::write_if(args.report.as_ref(), || {
+        changes_page::page(&changes.baseline, &new)
+    })?;
     outputs.tell(&args.json, &changes, || changes.to_string())
 }
 

@@ -69,10 +69,9 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     let progress = Progress::start(format!("comparing {} with {}", model.name, campaign.name));
     let (comparison, evaluated) = Comparison::new(&campaign, &model);
     drop(progress);
-    if let Some(path) = &args.report {
-        let page = comparison_page::page(&comparison, &evaluated, &model);
-        output::write_file(path, page.as_bytes())?;
-    }
+    output::write_if(args.report.as_ref(), || {
+        comparison_page::page(&comparison, &evaluated, &model)
+    })?;
     let fit = &evaluated.fit;
     let standing = match comparison.worst_cells().is_empty() {
         true => Standing::Adequate,

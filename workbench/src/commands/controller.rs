@@ -84,14 +84,8 @@ pub fn serve(
     let mut teaching = Teaching::default();
     let mut line = String::new();
     if !next_line(&mut input, &mut line, 1)? {
-        return Err(fault(
-            1,
-            LineError {
-                column: 1,
-                what: "there is no header".to_owned(),
-                hint: Columns::HINT.to_owned(),
-            },
-        ));
+        let error = LineError::new(1, "there is no header", Columns::HINT);
+        return Err(fault(1, error));
     }
     let mut columns = Columns::parse(&line).map_err(|error| fault(1, error))?;
     let has_field = columns.has_field();
@@ -166,25 +160,12 @@ fn next_line(input: &mut impl BufRead, line: &mut String, number: usize) -> Resu
         .read_line(line)
         .map_err(|error| {
             let what = format!("cannot be read: {error}");
-            fault(
-                number,
-                LineError {
-                    column: 1,
-                    what,
-                    hint: "send UTF-8 text".to_owned(),
-                },
-            )
+            fault(number, LineError::new(1, what, "send UTF-8 text"))
         })?;
     if read as u64 == LONGEST_BYTES && !line.ends_with('\n') {
-        let what = "the line is longer than 4096 bytes".to_owned();
-        return Err(fault(
-            number,
-            LineError {
-                column: 1,
-                what,
-                hint: "end each line with a line feed".to_owned(),
-            },
-        ));
+        let what = "the line is longer than 4096 bytes";
+        let error = LineError::new(1, what, "end each line with a line feed");
+        return Err(fault(number, error));
     }
     Ok(read > 0)
 }

@@ -60,10 +60,9 @@ pub fn run(args: &Args) -> Result<(), Error> {
     });
     let shown = Diagnosis::new(&experiment, &model, &found);
     drop(progress);
-    if let Some(path) = &args.report {
-        let page = diagnosis_page::page(&shown, &found, &experiment, &model);
-        output::write_file(path, page.as_bytes())?;
-    }
+    output::write_if(args.report.as_ref(), || {
+        diagnosis_page::page(&shown, &found, &experiment, &model)
+    })?;
     let written = args.next.write(&shown.next)?;
     outputs.tell(&args.json, &shown, || {
         let Head {

@@ -53,8 +53,6 @@ pub fn run(args: &Args) -> Result<(), Error> {
         )
     })?;
     let result = DraftResult::of(&campaign, fit);
-    if let Some(path) = &args.report {
-        output::write_file(path, draft_page::page(&result).as_bytes())?;
-    }
+    output::write_if(args.report.as_ref(), || draft_page::page(&result))?;
     outputs.tell(&args.json, &result, || result.to_string())
 }

@@ -4,7 +4,7 @@ mod status_line;
 use std::io::BufRead;
 use std::net::SocketAddr;
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::time::Instant;
 use std::{io, thread};
@@ -12,7 +12,8 @@ use std::{io, thread};
 use hitch_plant::Model;
 use hitch_protocols::can::Frame;
 
-use super::loop_::{calibration, load_kg};
+use super::loop_::calibration;
+use crate::arguments::number::{LOADS_KG, number};
 use crate::commands::ecu::status_line::StatusLine;
 use crate::ecu::slcan_server::SlcanServer;
 use crate::ecu::{
@@ -40,7 +41,7 @@ pub struct Args {
     #[arg(long, value_name = "MODEL", default_value = "dynamic")]
     model: String,
     /// Load at the hitch, kg; without this option, 9 % of what the model can lift, 150 for the paper's
-    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = load_kg)]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = number(LOADS_KG))]
     load: Option<f64>,
     /// Calibration of the ECU as delivered; without this option, the nominal one
     #[arg(long, value_name = "C.toml")]
@@ -52,7 +53,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     key: Option<PathBuf>,
     /// End after this many seconds
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = number(0.0..=86_400.0))]
     seconds: Option<f64>,
     /// Image of the emulated ECU; without this option, it is built from the sources
     #[arg(long, value_name = "FILE", conflicts_with = "host")]
@@ -86,7 +87,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let mut machine = runner.power_up(flash).map_err(failed)?;
     let result = session.run(&mut machine);
     let flash = machine.power_off().map_err(failed)?;
-    keep(args.flash.as_deref(), &flash)?;
+    let kept = args.flash.as_deref();
+    kept.map_or(Ok(()), |path| write_file(path, &flash))?;
     result
 }
 
@@ -123,23 +125,12 @@ fn flash_without_key(args: &Args) -> Result<Vec<u8>, Error> {
     }
 }
 
-fn keep(path: Option<&Path>, flash: &[u8]) -> Result<(), Error> {
-    path.map_or(Ok(()), |path| write_file(path, flash))
-}
-
 fn open_slcan_server(address: &str) -> Result<SlcanServer, Error> {
     SlcanServer::open(address).map_err(|error| {
         Error::Usage(format!(
             "--can {address}: cannot be opened: {error}; give an address of this machine and a free port, as in 127.0.0.1:7701"
         ))
     })
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (0.0..=86_400.0).contains(&seconds) => Ok(seconds),
-        _ => Err("it has to be a number from 0 to 86400".to_owned()),
-    }
 }
 
 /// Commands from standard input, as they arrive.

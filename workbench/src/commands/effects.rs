@@ -12,7 +12,7 @@ use crate::arguments::model::ModelArg;
 use crate::error::Error;
 use crate::output::targets::Outputs;
 use crate::output::{self, JsonArg};
-use crate::text::{Table, indented, wrapped};
+use crate::text::{Table, indented, joined, wrapped};
 
 /// Arguments of `hitch effects`.
 #[derive(Debug, clap::Args)]
@@ -92,16 +92,12 @@ fn card(effect: &dyn Effect) -> String {
         table.row(cells);
         table.note(parameter.meaning);
     }
-    let channels: Vec<&str> = effect
-        .channels()
-        .iter()
-        .map(|channel| channel.title())
-        .collect();
+    let channels = effect.channels().iter().map(|channel| channel.title());
     let _ = writeln!(text, "{table}");
     for (name, words) in [
         ("Source", effect.source()),
         ("Shows", effect.shows()),
-        ("Channels", &channels.join(", ")),
+        ("Channels", &joined(channels, ", ")),
     ] {
         let _ = writeln!(text, "{}", wrapped(&format!("{name}: {words}")));
     }

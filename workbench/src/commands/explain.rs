@@ -94,15 +94,8 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     } = Base::load(&args.model, &args.baseline)?.posed(folder)?;
     let improved = saving(&model, args.out.as_deref());
     let found = Found::new(experiment, model, options, &improved);
-    if let Some(path) = &args.out {
-        output::write_file(
-            path,
-            hitch_model_file::to_toml(&found.rebuilt(output::stem(path))).as_bytes(),
-        )?;
-    }
-    if let Some(path) = &args.report {
-        output::write_file(path, explanation_page::page(&found).as_bytes())?;
-    }
+    found.write_model(args.out.as_ref())?;
+    output::write_if(args.report.as_ref(), || explanation_page::page(&found))?;
     let written = args.next.write(&found.shown.next)?;
     outputs.tell(&args.json, &found.shown, || {
         let out = args.out.as_deref().filter(|path| !output::is_stdout(path));

@@ -108,13 +108,13 @@ impl FleetArgs {
         })?;
         match failed {
             0 => Ok(()),
-            _ if is_stdout(out) => Err(Error::Failed(format!(
-                "{failed} of {done} campaigns failed; their lines have the reasons"
-            ))),
-            _ => Err(Error::Failed(format!(
-                "{failed} of {done} campaigns failed; their lines in {} have the reasons",
-                out.display()
-            ))),
+            _ => {
+                let place = Some(out).filter(|out| !is_stdout(out));
+                let place = place.map_or(String::new(), |out| format!(" in {}", out.display()));
+                Err(Error::Failed(format!(
+                    "{failed} of {done} campaigns failed; their lines{place} have the reasons"
+                )))
+            }
         }
     }
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use hitch_campaign::{Bench, Run};
 
-use super::loop_::load_kg;
 use crate::arguments::model::ModelArg;
+use crate::arguments::number::{LOADS_KG, number};
 use crate::error::Error;
 use crate::import::files::columns;
 use crate::import::manifest::{Log, campaign, path_from};
@@ -36,7 +36,7 @@ pub struct Args {
     #[arg(long = "map", value_name = "CHANNEL=NAME:UNIT")]
     maps: Vec<String>,
     /// Load at the hitch, kg
-    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = load_kg)]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = number(LOADS_KG))]
     load: Option<f64>,
     /// Bench that the valve block is connected to
     #[arg(long, value_name = "BENCH", default_value = "hitch", value_parser = ["hitch", "flow"])]

@@ -9,6 +9,7 @@ use hitch_quantities::ValidCalibration;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::arguments::number::{LOADS_KG, OIL_C, number};
 use crate::closed_loop::ScenarioFigure;
 use crate::closed_loop::show::{presses_text, text};
 use crate::closed_loop::show_variants;
@@ -19,7 +20,7 @@ use crate::closed_loop::{
 };
 use crate::commands::loop_scenario::{self, LoopScenario};
 use crate::error::Error;
-use crate::field_loop::scenario::{self, FieldRun, FieldScenario};
+use crate::field_loop::scenario::{self, FieldScenario};
 use crate::output::JsonArg;
 use crate::output::progress::Progress;
 use crate::output::targets::Outputs;
@@ -56,13 +57,13 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t)]
     scenario: LoopScenario,
     /// Only this load at the hitch, kg
-    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = load_kg, conflicts_with = "loads")]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = number(LOADS_KG), conflicts_with = "loads")]
     load: Option<f64>,
     /// Loads at the hitch, kg; without this option, 3, 9 and 15 % of what the model can lift
-    #[arg(long, value_name = "KG,KG", value_delimiter = ',', value_parser = load_kg)]
+    #[arg(long, value_name = "KG,KG", value_delimiter = ',', value_parser = number(LOADS_KG))]
     loads: Option<Vec<f64>>,
     /// Oil temperatures, C; without this option, those of the scenario: 40, or 10, 40 and 70
-    #[arg(long, value_name = "C,C", value_delimiter = ',', allow_negative_numbers = true, value_parser = temperature_c)]
+    #[arg(long, value_name = "C,C", value_delimiter = ',', allow_negative_numbers = true, value_parser = number(OIL_C))]
     oil_temperatures: Option<Vec<f64>>,
     #[command(flatten)]
     json: JsonArg,
@@ -82,7 +83,7 @@ pub struct Driven<'a> {
 }
 
 /// Figures of a calibration in a scenario.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Default, Serialize, JsonSchema)]
 struct Figures<'a> {
     /// Figures of each move, in the order of the scenario.
     moves: &'a [MoveResult],
@@ -105,29 +106,15 @@ impl<'a> Figures<'a> {
         Self {
             moves: &run.results,
             summary: Some(run.summary),
-            presses: None,
-            press_summary: None,
-            field: None,
+            ..Self::default()
         }
     }
 
     fn of_presses(run: &'a PressRun) -> Self {
         Self {
-            moves: &[],
-            summary: None,
             presses: Some(&run.results),
             press_summary: Some(run.summary),
-            field: None,
-        }
-    }
-
-    fn of_field(run: &'a FieldRun) -> Self {
-        Self {
-            moves: &[],
-            summary: None,
-            presses: None,
-            press_summary: None,
-            field: Some(&run.figures),
+            ..Self::default()
         }
     }
 }
@@ -205,25 +192,11 @@ impl Job<'_> {
         let Some((base, varied)) = runs.split_first() else {
             return Err(Error::Usage("the scenario has no moves".to_owned()));
         };
-        if let Some(path) = &self.args.report {
-            let page = if varied.is_empty() {
-                self.page(base)
-            } else {
-                variants_page::of_moves(&self.setup(), &named)
-            };
-            output::write_file(path, page.as_bytes())?;
-        }
-        let varied = self.args.variants.iter().zip(varied);
-        let document = Driven {
-            figures: Figures::of_moves(base),
-            variants: varied
-                .map(|(variant, run)| DrivenVariant {
-                    name: &variant.name,
-                    settings: &variant.settings,
-                    figures: Figures::of_moves(run),
-                })
-                .collect(),
-        };
+        output::write_if(self.args.report.as_ref(), || match varied {
+            [] => self.page(base),
+            _ => variants_page::of_moves(&self.setup(), &named),
+        })?;
+        let document = self.document(base, varied, Figures::of_moves);
         self.outputs.tell(&self.args.json, &document, || {
             if document.variants.is_empty() {
                 text(&base.results, &base.summary)
@@ -258,21 +231,10 @@ impl Job<'_> {
         let Some((base, varied)) = runs.split_first() else {
             return Err(Error::Usage("the scenario has no presses".to_owned()));
         };
-        if let Some(path) = &self.args.report {
-            let page = variants_page::of_presses(&self.setup(), &named);
-            output::write_file(path, page.as_bytes())?;
-        }
-        let varied = self.args.variants.iter().zip(varied);
-        let document = Driven {
-            figures: Figures::of_presses(base),
-            variants: varied
-                .map(|(variant, run)| DrivenVariant {
-                    name: &variant.name,
-                    settings: &variant.settings,
-                    figures: Figures::of_presses(run),
-                })
-                .collect(),
-        };
+        output::write_if(self.args.report.as_ref(), || {
+            variants_page::of_presses(&self.setup(), &named)
+        })?;
+        let document = self.document(base, varied, Figures::of_presses);
         self.outputs.tell(&self.args.json, &document, || {
             if document.variants.is_empty() {
                 presses_text(&base.results, &base.summary)
@@ -311,18 +273,39 @@ impl Job<'_> {
         let progress = Progress::start("driving in the field");
         let run = scenario::drive(scenario, &model, base, 1).map_err(Error::Usage)?;
         drop(progress);
-        if let Some(path) = &self.args.report {
+        output::write_if(self.args.report.as_ref(), || {
             let name = loop_scenario::typed(&scenario);
-            let page = field_page::page(&name, &model, &self.source(), &run);
-            output::write_file(path, page.as_bytes())?;
-        }
+            field_page::page(&name, &model, &self.source(), &run)
+        })?;
         let document = Driven {
-            figures: Figures::of_field(&run),
+            figures: Figures {
+                field: Some(&run.figures),
+                ..Figures::default()
+            },
             variants: Vec::new(),
         };
         self.outputs.tell(&self.args.json, &document, || {
             field_loop::show::text(&run.figures)
         })
+    }
+
+    /// The document of a run, and of those of the variants.
+    fn document<'r, Run>(
+        &'r self,
+        base: &'r Run,
+        varied: &'r [Run],
+        figures: fn(&'r Run) -> Figures<'r>,
+    ) -> Driven<'r> {
+        let variants = self.args.variants.iter().zip(varied);
+        let variants = variants.map(|(variant, run)| DrivenVariant {
+            name: &variant.name,
+            settings: &variant.settings,
+            figures: figures(run),
+        });
+        Driven {
+            figures: figures(base),
+            variants: variants.collect(),
+        }
     }
 
     /// A fault of a run; with variants, after the name of its calibration.
@@ -438,30 +421,5 @@ pub fn calibration(path: Option<&PathBuf>) -> Result<ValidCalibration, Error> {
             .map_err(|error| {
                 Error::Failed(format!("the nominal calibration is invalid: {error:?}"))
             }),
-    }
-}
-
-/// Largest load of a hitch, kg: category 4 lifts 13 t.
-const MOST_KG: f64 = 20_000.0;
-
-/// Parses an oil temperature from the command line.
-///
-/// # Errors
-/// If it is not one of hydraulic oil.
-pub fn temperature_c(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(temperature_c) if (-40.0..=120.0).contains(&temperature_c) => Ok(temperature_c),
-        _ => Err("it has to be a number from -40 to 120".to_owned()),
-    }
-}
-
-/// Parses a load from the command line.
-///
-/// # Errors
-/// If it is not a valid load.
-pub fn load_kg(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(load_kg) if (0.0..=MOST_KG).contains(&load_kg) => Ok(load_kg),
-        _ => Err(format!("it has to be a number from 0 to {MOST_KG}")),
     }
 }

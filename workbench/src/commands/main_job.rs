@@ -17,7 +17,7 @@ use crate::output;
 use crate::output::progress::Progress;
 use crate::output::targets::Outputs;
 use crate::report::main_page;
-use crate::text::{colour, indented, wrapped};
+use crate::text::{colour, indented, joined, wrapped};
 
 /// Number of worst cells that are listed.
 const NAMED_CELLS: usize = 3;
@@ -79,8 +79,7 @@ fn explained(found: &Found) -> String {
     let shown = &found.shown;
     let mut text = String::from("\nMissing:\n");
     for step in &shown.steps {
-        let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
-        let line = format!("{}: {}", step.name(), parameters.join(", "));
+        let line = format!("{}: {}", step.name(), joined(&step.parameters, ", "));
         text += &format!("{}\n", indented(&line, 2));
     }
     let head = &shown.head;

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use hitch_campaign::{Bench, Run};
 
-use super::loop_::{load_kg, temperature_c};
+use crate::arguments::number::{LOADS_KG, OIL_C, number};
 use crate::error::Error;
 use crate::import::run_block::RunBlock;
 use crate::output;
 use crate::output::progress::Progress;
-use crate::text::wrapped;
+use crate::text::{joined, wrapped};
 use crate::xcp_tool::{
     BusAddress, CHANNELS, PERIOD_MS, Recording, Row, connect, record, tool_error,
 };
@@ -31,13 +31,13 @@ pub struct Args {
     #[arg(long, value_name = "CAMPAIGN")]
     out: PathBuf,
     /// Load at the hitch, kg
-    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = load_kg)]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = number(LOADS_KG))]
     load: f64,
     /// Oil temperature, C
-    #[arg(long, value_name = "C", allow_negative_numbers = true, value_parser = temperature_c)]
+    #[arg(long, value_name = "C", allow_negative_numbers = true, value_parser = number(OIL_C))]
     temperature: f64,
     /// Duration, s
-    #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value = "30", value_parser = number(0.1..=3_600.0))]
     seconds: f64,
 }
 
@@ -105,16 +105,9 @@ fn log(rows: &[Row]) -> String {
     let names: Vec<&str> = CHANNELS.iter().map(|(column, _)| *column).collect();
     let mut text = format!("time_s,{}\n", names.join(","));
     for (time_s, values) in rows {
-        let values: Vec<String> = values.iter().map(|value| format!("{value:.3}")).collect();
+        let values = values.iter().map(|value| format!("{value:.3}"));
         // Writing to a string can't fail.
-        let _ = writeln!(text, "{time_s:.3},{}", values.join(","));
+        let _ = writeln!(text, "{time_s:.3},{}", joined(values, ","));
     }
     text
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (0.1..=3_600.0).contains(&seconds) => Ok(seconds),
-        _ => Err("it has to be a number from 0.1 to 3600".to_owned()),
-    }
 }

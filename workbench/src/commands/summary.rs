@@ -36,8 +36,6 @@ pub fn run(args: &Args) -> Result<(), Error> {
         lines.extend(read(path)?);
     }
     let summary = FleetSummary::of(lines);
-    if let Some(path) = &args.report {
-        output::write_file(path, fleet_page::page(&summary).as_bytes())?;
-    }
+    output::write_if(args.report.as_ref(), || fleet_page::page(&summary))?;
     outputs.tell(&args.json, &summary, || summary.to_string())
 }

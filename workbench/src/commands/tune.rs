@@ -6,11 +6,13 @@ use hitch_controller_host::calibration_file;
 use hitch_plant::Model;
 use hitch_quantities::Calibration;
 
+use crate::arguments::number::{LOADS_KG, number};
 use crate::closed_loop::{self, LoopRun, Move, Press, PressRun, Scenario, run_presses};
-use crate::commands::loop_::{changed, load_kg, read_files};
+use crate::commands::loop_::{changed, read_files};
+use crate::commands::loop_scenario::LoopScenario;
 use crate::commands::tune_field;
 use crate::commands::tune_result::{Found, Search, Tuned};
-use crate::commands::tune_scenario::TuneScenario;
+use crate::commands::tune_scenario::{self, tunable};
 use crate::error::Error;
 use crate::output::progress::Progress;
 use crate::output::targets::Outputs;
@@ -52,10 +54,10 @@ pub struct Args {
     #[arg(long, value_name = "COUNT", default_value_t = 400, value_parser = clap::value_parser!(u32).range(10..=100_000))]
     trials: u32,
     /// Moves to drive
-    #[arg(long, value_enum, default_value_t = TuneScenario::Moves(Scenario::Tuning))]
-    scenario: TuneScenario,
+    #[arg(long, value_parser = tunable(), default_value_t = LoopScenario::Moves(Scenario::Tuning))]
+    scenario: LoopScenario,
     /// Loads at the hitch, kg; without this option, 3, 9 and 15 % of what the model can lift
-    #[arg(long, value_name = "KG,KG", value_delimiter = ',', value_parser = load_kg)]
+    #[arg(long, value_name = "KG,KG", value_delimiter = ',', value_parser = number(LOADS_KG))]
     loads: Option<Vec<f64>>,
     #[command(flatten)]
     json: JsonArg,
@@ -98,12 +100,12 @@ pub fn run(args: &Args) -> Result<(), Error> {
         trials: args.trials as usize,
     };
     let found = match args.scenario {
-        TuneScenario::Field(_) if args.loads.is_some() => {
+        LoopScenario::Field(_) if args.loads.is_some() => {
             return Err(Error::Usage(
                 "scenarios of the field have their own loads: leave --loads out".to_owned(),
             ));
         }
-        TuneScenario::Field(scenario) => tune_field::tuned(&search, scenario)?,
+        LoopScenario::Field(scenario) => tune_field::tuned(&search, scenario)?,
         _ => args.by_moves(&search)?,
     };
     let is_worse = found.tuned.is_worse();
@@ -111,9 +113,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         let text = calibration_file::write_tuned(&found.calibration, &base);
         output::write_file(&args.out, text.as_bytes())?;
     }
-    if let Some(path) = &args.report {
-        output::write_file(path, found.page.as_bytes())?;
-    }
+    output::write_if(args.report.as_ref(), || found.page)?;
     outputs.tell(&args.json, &found.tuned, || found.tuned.to_string())?;
     if is_worse && !args.force {
         Err(worse(args, &found.tuned))
@@ -127,8 +127,9 @@ impl Args {
     fn by_moves(&self, search: &Search<'_>) -> Result<Found, Error> {
         let (model, base) = (search.model, search.base);
         let progress = Progress::start("computing the ideal manoeuvres");
-        let moves = self.scenario.moves(model, self.loads.as_deref());
-        let presses = self.scenario.presses(model, base, self.loads.as_deref());
+        let (scenario, loads_kg) = (self.scenario, self.loads.as_deref());
+        let moves = tune_scenario::moves(scenario, model, loads_kg);
+        let presses = tune_scenario::presses(scenario, model, base, loads_kg);
         let trial = Trial::new(model, &moves, &presses);
         let before = trial.judge(base).ok_or_else(Search::nothing)?;
         drop(progress);

@@ -79,18 +79,8 @@ impl Tuned {
 
 impl fmt::Display for Tuned {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut values = Table::new(["value", "before", "after"]);
-        for change in &self.changes {
-            values.row([
-                change.key.clone(),
-                format!("{:.3}", change.before),
-                format!("{:.3}", change.after),
-            ]);
-        }
-        let mut table = Table::new(Figure::HEADINGS);
-        for figure in &self.figures {
-            table.row(figure.cells());
-        }
+        let values = Table::of(Change::HEADINGS, self.changes.iter().map(Change::cells));
+        let table = Table::of(Figure::HEADINGS, self.figures.iter().map(Figure::cells));
         let said = figures::sentence(&self.figures).unwrap_or_default();
         writeln!(f, "{values}\n{table}\n{said}")
     }

@@ -1,85 +1,59 @@
-//! Scenarios of `hitch tune`: sets of moves, and the external button.
-
-use std::fmt;
+//! Scenarios of `hitch tune`: those of `hitch loop` with values to tune, and what is driven for them.
 
 use clap::ValueEnum;
-use clap::builder::PossibleValue;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use hitch_plant::Model;
 use hitch_quantities::ValidCalibration;
 
 use crate::closed_loop::{self, Move, OIL_TEMPERATURE_C, Press, Scenario};
-use crate::commands::loop_scenario::{LoopScenario, typed};
+use crate::commands::loop_scenario::LoopScenario;
 use crate::field_loop::scenario::FieldScenario;
 
-/// What is driven for tuning.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TuneScenario {
-    /// Moves of the lever.
-    Moves(Scenario),
-    /// The external button.
-    Rate,
-    /// A function in the field.
-    Field(FieldScenario),
+/// Parses a scenario that has values to tune.
+pub fn tunable() -> impl TypedValueParser<Value = LoopScenario> {
+    let scenarios = LoopScenario::value_variants().iter();
+    let tunable = scenarios.filter(|scenario| has_values(**scenario));
+    PossibleValuesParser::new(tunable.filter_map(named))
+        .try_map(|name| LoopScenario::from_str(&name, false))
 }
 
-impl TuneScenario {
-    /// Moves of the lever.
-    pub fn moves(self, model: &Model, loads_kg: Option<&[f64]>) -> Vec<Move> {
-        match self {
-            Self::Moves(scenario) => scenario.moves(model, loads_kg),
-            Self::Rate | Self::Field(_) => Vec::new(),
-        }
-    }
+fn has_values(scenario: LoopScenario) -> bool {
+    !matches!(
+        scenario,
+        LoopScenario::QuickLift | LoopScenario::Field(FieldScenario::Headland)
+    )
+}
 
-    /// Presses of the button, at the speeds of a calibration. The set of moves for tuning has them too.
-    pub fn presses(
-        self,
-        model: &Model,
-        calibration: &ValidCalibration,
-        loads_kg: Option<&[f64]>,
-    ) -> Vec<Press> {
-        match self {
-            Self::Rate | Self::Moves(Scenario::Tuning) => {
-                closed_loop::presses(model, calibration, loads_kg, &[OIL_TEMPERATURE_C])
-            }
-            Self::Moves(_) | Self::Field(_) => Vec::new(),
-        }
+fn named(scenario: &LoopScenario) -> Option<PossibleValue> {
+    let value = scenario.to_possible_value()?;
+    Some(match scenario {
+        LoopScenario::Moves(Scenario::Tuning) => value.help(
+            "A small set of moves of 2 to 80 degrees with cold, warm and hot oil, and the presses of `rate`",
+        ),
+        _ => value,
+    })
+}
+
+/// Moves of the lever in a scenario.
+pub fn moves(scenario: LoopScenario, model: &Model, loads_kg: Option<&[f64]>) -> Vec<Move> {
+    match scenario {
+        LoopScenario::Moves(scenario) => scenario.moves(model, loads_kg),
+        _ => Vec::new(),
     }
 }
 
-impl ValueEnum for TuneScenario {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[
-            Self::Moves(Scenario::Moves),
-            Self::Moves(Scenario::Quick),
-            Self::Moves(Scenario::Fine),
-            Self::Moves(Scenario::Ends),
-            Self::Moves(Scenario::Tuning),
-            Self::Moves(Scenario::Limits),
-            Self::Rate,
-            Self::Field(FieldScenario::Draft),
-            Self::Field(FieldScenario::Mix),
-            Self::Field(FieldScenario::Slip),
-            Self::Field(FieldScenario::Depth),
-            Self::Field(FieldScenario::Transport),
-        ]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        match self {
-            Self::Moves(Scenario::Tuning) => Some(PossibleValue::new("tuning").help(
-                "A small set of moves of 2 to 80 degrees with cold, warm and hot oil, and the presses of `rate`",
-            )),
-            Self::Moves(scenario) => LoopScenario::Moves(*scenario).to_possible_value(),
-            Self::Rate => LoopScenario::Rate.to_possible_value(),
-            Self::Field(scenario) => LoopScenario::Field(*scenario).to_possible_value(),
+/// Presses of the button, at the speeds of a calibration. The set of moves for tuning has them too.
+pub fn presses(
+    scenario: LoopScenario,
+    model: &Model,
+    calibration: &ValidCalibration,
+    loads_kg: Option<&[f64]>,
+) -> Vec<Press> {
+    match scenario {
+        LoopScenario::Rate | LoopScenario::Moves(Scenario::Tuning) => {
+            closed_loop::presses(model, calibration, loads_kg, &[OIL_TEMPERATURE_C])
         }
-    }
-}
-
-impl fmt::Display for TuneScenario {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&typed(self))
+        _ => Vec::new(),
     }
 }
 
@@ -90,7 +64,7 @@ mod tests {
     #[test]
     fn every_set_of_moves_can_be_tuned() {
         for scenario in Scenario::value_variants() {
-            assert!(TuneScenario::value_variants().contains(&TuneScenario::Moves(*scenario)));
+            assert!(has_values(LoopScenario::Moves(*scenario)));
         }
     }
 }

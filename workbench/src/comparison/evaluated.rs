@@ -6,7 +6,7 @@ use super::cell::Cell;
 use super::current_groups::CurrentGroups;
 use super::groups::Part;
 use super::raw_error;
-use super::tally::Tally;
+use super::tally::{Tally, add_to};
 use crate::comparison::Grouping;
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
@@ -49,6 +49,11 @@ impl Evaluated {
         }
     }
 
+    /// The same of a fit and a campaign that are kept.
+    pub fn of(experiment: &Experiment, fit: &Fit, model: &Model) -> Self {
+        Self::fitted(Arc::new(experiment.clone()), fit.clone(), model)
+    }
+
     /// Whitened residuals of a channel of a run, NaN where not compared.
     pub fn residuals(&self, run: usize, channel: Channel) -> Vec<f64> {
         let samples = self.experiment.runs[run].len();
@@ -79,10 +84,11 @@ impl Evaluated {
             for channel in Channel::ALL {
                 let mut parts: Vec<(Part, Tally)> = Vec::new();
                 for (index, run) in self.experiment.runs.iter().enumerate() {
-                    for (sample, residual) in self.residuals(index, channel).into_iter().enumerate()
-                    {
-                        let part = by.part(&self.groups, run, sample);
-                        tally(&mut parts, part, residual);
+                    let residuals = self.residuals(index, channel).into_iter().enumerate();
+                    for (sample, residual) in residuals.filter(|(_, one)| one.is_finite()) {
+                        if let Some(part) = by.part(&self.groups, run, sample) {
+                            add_to(&mut parts, part, residual);
+                        }
                     }
                 }
                 parts.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
@@ -112,19 +118,5 @@ impl Evaluated {
     /// Simulated samples of every channel of a run, in the channels' units.
     pub fn simulated(&self, model: &Model, run: usize) -> Trace {
         raw_error::simulated(&self.experiment, &self.fit, model, run)
-    }
-}
-
-fn tally(parts: &mut Vec<(Part, Tally)>, part: Option<Part>, residual: f64) {
-    let Some(part) = part.filter(|_| residual.is_finite()) else {
-        return;
-    };
-    match parts.iter_mut().find(|(known, _)| *known == part) {
-        Some((_, tally)) => tally.add(residual),
-        None => {
-            let mut tally = Tally::default();
-            tally.add(residual);
-            parts.push((part, tally));
-        }
     }
 }

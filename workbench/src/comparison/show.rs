@@ -4,7 +4,7 @@ use std::fmt;
 
 use hitch_plant::Channel;
 
-use super::{Cell, Comparison, Grouping};
+use super::{Cell, ChannelError, Comparison, Grouping};
 use crate::text::colour::by_sigma;
 use crate::text::{Table, indented, wrapped};
 use crate::web::heat_table::{HeatTable, Shade};
@@ -26,22 +26,18 @@ impl fmt::Display for Comparison {
             sigma(self.error),
             self.noise_floor
         )?;
-        let mut table = Table::new(["channel", "error sigma", "rms", "noise", "unit", "samples"]);
-        for channel in &self.channels {
+        let row = |channel: &ChannelError| {
             let numbers = [
                 sigma(channel.error),
                 format!("{:.3}", channel.rms),
                 format!("{:.3}", channel.noise),
             ];
             let rest = [channel.unit.to_owned(), channel.samples.to_string()];
-            table.row(
-                [channel.channel.to_owned()]
-                    .into_iter()
-                    .chain(numbers)
-                    .chain(rest),
-            );
-        }
-        writeln!(f, "{table}")?;
+            let names = [channel.channel.to_owned()].into_iter();
+            names.chain(numbers).chain(rest)
+        };
+        let header = ["channel", "error sigma", "rms", "noise", "unit", "samples"];
+        writeln!(f, "{}", Table::of(header, self.channels.iter().map(row)))?;
         for by in Grouping::ALL {
             writeln!(f, "Error in sigma {}\n{}", by.title(), self.grid(by).text())?;
         }
@@ -142,11 +138,10 @@ impl HeatTable {
         let header = [self.corner.as_str()]
             .into_iter()
             .chain(self.columns.iter().map(String::as_str));
-        let mut table = Table::new(header);
-        for (name, cells) in &self.rows {
+        let row = |(name, cells): &(String, Vec<Option<f64>>)| {
             let cells = cells.iter().map(|cell| cell.map_or("-".to_owned(), sigma));
-            table.row([name.clone()].into_iter().chain(cells));
-        }
-        table
+            [name.clone()].into_iter().chain(cells).collect::<Vec<_>>()
+        };
+        Table::of(header, self.rows.iter().map(row))
     }
 }

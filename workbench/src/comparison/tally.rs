@@ -31,6 +31,16 @@ impl Tally {
     }
 }
 
+/// Adds a value to the tally of its part; a part has one from its first value on.
+pub fn add_to<P: PartialEq>(parts: &mut Vec<(P, Tally)>, part: P, value: f64) {
+    let known = parts.iter().position(|(known, _)| *known == part);
+    let place = known.unwrap_or_else(|| {
+        parts.push((part, Tally::default()));
+        parts.len() - 1
+    });
+    parts[place].1.add(value);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::groups::Part;
-use super::tally::Tally;
+use super::tally::{Tally, add_to};
 use super::{Evaluated, Grouping};
 
 /// Length of the worst stretch of a run, s.
@@ -99,14 +99,8 @@ fn errors<P: PartialEq>(
 ) -> Vec<(P, f64)> {
     let mut tallies: Vec<(P, Tally)> = Vec::new();
     for sample in stretch.filter(|&sample| residuals[sample].is_finite()) {
-        let Some(part) = part(sample) else { continue };
-        match tallies.iter_mut().find(|(known, _)| *known == part) {
-            Some((_, tally)) => tally.add(residuals[sample]),
-            None => {
-                let mut tally = Tally::default();
-                tally.add(residuals[sample]);
-                tallies.push((part, tally));
-            }
+        if let Some(part) = part(sample) {
+            add_to(&mut tallies, part, residuals[sample]);
         }
     }
     let figure = |(part, tally): (P, Tally)| (part, tally.rms());

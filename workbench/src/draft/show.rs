@@ -9,16 +9,9 @@ use crate::text::{Table, significant, wrapped};
 impl fmt::Display for DraftResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}\n", wrapped(&self.sentence()))?;
-        let mut table = Table::new(Self::COEFFICIENTS);
-        for row in self.coefficient_rows() {
-            table.row(row);
-        }
-        writeln!(f, "{table}")?;
-        let mut table = Table::new(Self::EFFECTS);
-        for row in self.effect_rows() {
-            table.row(row);
-        }
-        writeln!(f, "{table}")?;
+        let coefficients = Table::of(Self::COEFFICIENTS, self.coefficient_rows());
+        let effects = Table::of(Self::EFFECTS, self.effect_rows());
+        writeln!(f, "{coefficients}\n{effects}")?;
         for line in self.remarks() {
             writeln!(f, "{}", wrapped(&line))?;
         }

@@ -37,7 +37,9 @@ impl<'a> Base<'a> {
     pub fn load(model: &'a ModelArg, baseline: &BaselineArg) -> Result<Self, Error> {
         match baseline.folder() {
             Some(folder) => {
-                let (model, campaign) = model.load_for(folder)?;
+                let read = model.load()?;
+                let campaign = Campaign::load_with(folder, read.linkage())?;
+                let model = model.nearer(read, &campaign);
                 Ok(Self::Since(Box::new(Since::new(&campaign, model))))
             }
             None => Ok(Self::Alone(model, model.load()?)),

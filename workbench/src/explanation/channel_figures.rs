@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::text::known;
+use crate::text::{joined, known};
 
 /// Key of the sum of the contributions to a delay.
 pub(super) const SUM: &str = "sum";
@@ -94,10 +94,8 @@ impl ChannelFigures {
             CLOCK => "clock of the log",
             other => other,
         };
-        let terms: Vec<String> = named
-            .map(|(name, part_s)| format!("{}: {:+.0}", said(name), 1e3 * part_s))
-            .collect();
+        let terms = named.map(|(name, part_s)| format!("{}: {:+.0}", said(name), 1e3 * part_s));
         let sum_ms = 1e3 * parts.get(SUM).copied().unwrap_or(f64::NAN);
-        Some(format!("{sum_ms:.0} ms ({})", terms.join(", ")))
+        Some(format!("{sum_ms:.0} ms ({})", joined(terms, ", ")))
     }
 }

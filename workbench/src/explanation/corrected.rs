@@ -85,12 +85,9 @@ impl Corrected {
 
 impl fmt::Display for Corrected {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut table = Table::new(ShownConstant::HEADINGS);
-        for constant in self.moved() {
-            table.row(constant.cells());
-        }
         if self.moved().next().is_some() {
-            writeln!(f, "{table}")?;
+            let moved = self.moved().map(ShownConstant::cells);
+            writeln!(f, "{}", Table::of(ShownConstant::HEADINGS, moved))?;
         }
         if let Some(reason) = &self.withheld {
             writeln!(f, "{}", wrapped(reason))?;

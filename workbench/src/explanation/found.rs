@@ -1,5 +1,7 @@
 //! An explanation with its model and campaign.
 
+use std::path::PathBuf;
+
 use hitch_identification::adequacy::localization::ErrorProfile;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
@@ -11,8 +13,10 @@ use hitch_identification::suggestion::{Suggestion, suggest};
 use hitch_plant::{AddedEffect, Effect, Model, full_name, is_same};
 
 use super::{Explanation, rebuilt};
+use crate::error::Error;
+use crate::output;
 use crate::output::progress::Progress;
-use crate::text::significant;
+use crate::text::{joined, significant};
 
 /// An explanation with its inputs and display form.
 #[derive(Debug, Clone)]
@@ -100,6 +104,16 @@ impl Found {
         }
         model
     }
+
+    /// Writes [`Found::rebuilt`] to a file, if there is one; the file names it.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_model(&self, path: Option<&PathBuf>) -> Result<(), Error> {
+        let model = |path: &PathBuf| self.rebuilt(output::stem(path));
+        let text = path.map(model).as_ref().map(hitch_model_file::to_toml);
+        output::write_if(path, || text.unwrap_or_default())
+    }
 }
 
 /// An explanation with a term for the remaining error, as returned by the identification and for display.
@@ -159,10 +173,10 @@ fn account(model: &Model, fit: &Fit) -> String {
             .trim_end()
             .to_owned()
     };
-    let effects: Vec<String> = effects.map(named).collect();
+    let effects = effects.map(named);
     format!(
         "best so far: {}; error {:.2} sigma",
-        effects.join(", "),
+        joined(effects, ", "),
         fit.error()
     )
 }

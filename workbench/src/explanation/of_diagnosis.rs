@@ -4,7 +4,6 @@ use std::cmp::Ordering;
 
 use hitch_identification::adequacy::attribution::attribute;
 use hitch_identification::adequacy::lack_of_fit::{adequate, cells};
-use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::design::exploration::exploring;
@@ -16,7 +15,7 @@ use hitch_identification::selection::candidate;
 use hitch_identification::selection::evidence::{DISTINGUISHABLE, SIGNIFICANT};
 use hitch_plant::Model;
 
-use super::of_explanation::{channels, parameters};
+use super::of_explanation::parameters;
 use super::{Candidate, Diagnosis, Head};
 
 impl Diagnosis {
@@ -36,16 +35,7 @@ impl Diagnosis {
         candidates[settled..].sort_by(as_shown);
         let verdict = verdict(experiment, found, believed);
         Self {
-            head: Head {
-                campaign: experiment.name.clone(),
-                model: model.name.clone(),
-                error_before: found.base.error(),
-                error_after: after.error(),
-                noise_floor: 1.0,
-                channels: channels(experiment, model, &found.base, after),
-                verdict: verdict.name(),
-                unsuitable_base: is_unsuitable(experiment, &found.base, after),
-            },
+            head: Head::new((experiment, model), [&found.base, after], verdict),
             candidates,
             constants_off: found.constants_off,
             next: next(Problem::new(experiment, model), found, believed, verdict).into(),

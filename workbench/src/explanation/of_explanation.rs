@@ -21,16 +21,11 @@ impl Explanation {
     /// The display form of an explanation of a campaign, with the initial model.
     pub fn new(experiment: &Experiment, model: &Model, found: &explain::Explanation) -> Self {
         Self {
-            head: Head {
-                campaign: experiment.name.clone(),
-                model: model.name.clone(),
-                error_before: found.before.error(),
-                error_after: found.after.error(),
-                noise_floor: 1.0,
-                channels: channels(experiment, model, &found.before, &found.after),
-                verdict: found.verdict.name(),
-                unsuitable_base: is_unsuitable(experiment, &found.before, &found.after),
-            },
+            head: Head::new(
+                (experiment, model),
+                [&found.before, &found.after],
+                found.verdict,
+            ),
             error_refitted: found.refitted.as_ref().map(Fit::error),
             corrected_constants: found
                 .corrected
@@ -53,6 +48,26 @@ impl Explanation {
             not_visible: found.undetected.iter().map(not_visible).collect(),
             unfinished: found.unfinished,
             next: found.next_experiment.clone().into(),
+        }
+    }
+}
+
+impl Head {
+    /// The head of a result: a campaign and the initial model, the fits before and after, and the verdict.
+    pub(super) fn new(
+        (experiment, model): (&Experiment, &Model),
+        [before, after]: [&Fit; 2],
+        verdict: explain::Verdict,
+    ) -> Self {
+        Self {
+            campaign: experiment.name.clone(),
+            model: model.name.clone(),
+            error_before: before.error(),
+            error_after: after.error(),
+            noise_floor: 1.0,
+            channels: channels(experiment, model, before, after),
+            verdict: verdict.name(),
+            unsuitable_base: is_unsuitable(experiment, before, after),
         }
     }
 }
@@ -129,7 +144,7 @@ pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)])
 ///
 /// The errors are those in sigma times sigma, so that they add up to the total error. The effect of current noise on
 /// the simulation is not a model error and is excluded.
-pub fn channels(
+fn channels(
     experiment: &Experiment,
     model: &Model,
     before: &Fit,

@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::import::run_block::RunBlock;
-use crate::text::known;
+use crate::text::{joined, known};
 
 /// Sample rate of a file of currents, Hz.
 const PROFILE_HZ: f64 = 100.0;
@@ -59,7 +59,7 @@ impl PlannedRun {
             Some(format!("oil at {} °C", known(self.oil_temperature_c, 0))),
             Some(format!("{} s", known(self.duration_s, 0))),
         ];
-        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+        joined(parts.into_iter().flatten(), ", ")
     }
 }
 

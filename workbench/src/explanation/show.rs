@@ -11,7 +11,7 @@ use super::{
 };
 use crate::text::colour::{self, by_sigma};
 use crate::text::words;
-use crate::text::{Table, indented, known, significant, wrapped};
+use crate::text::{Table, indented, joined, known, significant, wrapped};
 
 /// Indentation of the details of a step, characters.
 const DETAIL: usize = 5;
@@ -102,11 +102,9 @@ impl Explanation {
 
     /// The campaign and the explained model as the reference of a comparison, with its error in sigma as it is shown.
     pub fn as_reference(&self, error: &str) -> String {
-        let names: Vec<String> = self.steps.iter().map(|step| step.name()).collect();
-        let added = if names.is_empty() {
-            String::new()
-        } else {
-            format!(" with {}", names.join(", "))
+        let added = match joined(self.steps.iter().map(Step::name), ", ") {
+            names if names.is_empty() => names,
+            names => format!(" with {names}"),
         };
         let Head {
             campaign, model, ..
@@ -195,8 +193,8 @@ impl fmt::Display for Diagnosis {
         }
         writeln!(f, "{table}")?;
         if !idle.is_empty() {
-            let names: Vec<String> = idle.iter().map(|candidate| candidate.name()).collect();
-            let line = format!("They explain nothing: {}.", names.join(", "));
+            let names = joined(idle.iter().map(|candidate| candidate.name()), ", ");
+            let line = format!("They explain nothing: {names}.");
             writeln!(f, "{}", wrapped(&line))?;
         }
         let terms = words::sentences(&[words::EXPLAINS, words::CONFIDENCE, words::DETECTABILITY]);
@@ -242,19 +240,15 @@ impl fmt::Display for Head {
             "  error {before} -> {after} sigma (noise of the instruments: {:.2})\n",
             self.noise_floor
         )?;
-        let mut table = Table::new(["channel"].into_iter().chain(ChannelFigures::HEADINGS));
-        for (channel, values) in &self.channels {
+        let row = |(channel, values): (&&str, &ChannelFigures)| {
             let [before, after, rest @ ..] = values.cells();
             let [worst, best] = values.sigmas();
             let sigmas = [by_sigma(&before, worst), by_sigma(&after, best)];
-            table.row(
-                [(*channel).to_owned()]
-                    .into_iter()
-                    .chain(sigmas)
-                    .chain(rest),
-            );
-        }
-        write!(f, "{table}")?;
+            let names = [(*channel).to_owned()].into_iter();
+            names.chain(sigmas).chain(rest)
+        };
+        let header = ["channel"].into_iter().chain(ChannelFigures::HEADINGS);
+        write!(f, "{}", Table::of(header, self.channels.iter().map(row)))?;
         for (channel, values) in &self.channels {
             if let Some(parts) = values.delay_ms() {
                 let line = format!("{channel} is {parts} behind the currents");
@@ -310,8 +304,7 @@ impl Step {
 /// What the parameters of an effect are, in a few words.
 pub fn meanings(parameters: &[Parameter]) -> String {
     let one = |parameter: &Parameter| format!("{}: {}", parameter.name, parameter.meaning);
-    let all: Vec<String> = parameters.iter().map(one).collect();
-    all.join("; ")
+    joined(parameters.iter().map(one), "; ")
 }
 
 /// A step without its number; lines after the first are indented.
@@ -329,8 +322,7 @@ impl Step {
 
     /// Its parameters, and the size that it had before.
     fn sizes(&self) -> String {
-        let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
-        format!("{}{}", self.change(), values.join(", "))
+        format!("{}{}", self.change(), joined(&self.parameters, ", "))
     }
 }
 
@@ -357,15 +349,15 @@ impl fmt::Display for Step {
         }
         if self.form_undetermined {
             let forms = self.other_forms.iter();
-            let forms: Vec<&str> = forms.map(|form| form.unwrap_or("default")).collect();
+            let forms = forms.map(|form| form.unwrap_or("default"));
             detail(&format!(
                 "form undetermined: {} explains the campaign equally well",
-                forms.join(", ")
+                joined(forms, ", ")
             ))?;
         }
         if !self.alternatives.is_empty() {
-            let others: Vec<String> = self.alternatives.iter().map(ToString::to_string).collect();
-            detail(&format!("indistinguishable from: {}", others.join(", ")))?;
+            let others = joined(&self.alternatives, ", ");
+            detail(&format!("indistinguishable from: {others}"))?;
         }
         Ok(())
     }
@@ -421,7 +413,6 @@ impl fmt::Display for Unexplained {
 
 impl fmt::Display for Suggested {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let parameters: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
         let mut head = format!(
             "Suggested term: it reduces the error on held-out runs from {} to {}",
             known(self.held_out_before, 2),
@@ -433,7 +424,7 @@ impl fmt::Display for Suggested {
         writeln!(f, "\n{}:\n", indented(&head, 2))?;
         let formula = format!("{} = {}", self.place, self.formula);
         writeln!(f, "{}", indented(&formula, 4))?;
-        writeln!(f, "{}\n", indented(&parameters.join(", "), 4))?;
+        writeln!(f, "{}\n", indented(&joined(&self.parameters, ", "), 4))?;
         let line = "It describes the error; it is not an identified cause. For a model file:";
         writeln!(f, "{}", indented(line, 2))?;
         for line in self.model_file.lines() {

@@ -1,5 +1,6 @@
 //! Figures of a stretch of a pass.
 
+use hitch_closed_loop::Sample;
 use hitch_closed_loop::field::FieldSample;
 
 /// Corner frequency of a low-pass, Hz. The draft is judged with and without it; the loop gets the filtered draft.
@@ -67,24 +68,23 @@ impl Figures {
             depth_m: Spread::of(field.clone().map(|field| field.depth_m)),
             slip: Spread::of(field.clone().map(|field| field.slip)),
             slip_max: field.map(|field| field.slip).fold(0.0, f64::max),
-            activations_per_min: activations(samples) as f64 / minutes,
+            activations_per_min: activations(samples.iter().map(|sample| &sample.hitch)) as f64
+                / minutes,
         }
     }
 }
 
 /// How often a coil was switched on.
 #[must_use]
-pub fn activations(samples: &[FieldSample]) -> usize {
-    let on = |sample: &FieldSample| {
-        let outputs = &sample.hitch.outputs;
+pub fn activations<'s>(samples: impl Iterator<Item = &'s Sample> + Clone) -> usize {
+    let on = |sample: &Sample| {
+        let outputs = &sample.outputs;
         [outputs.lift_current.0 > 0, outputs.lower_current.0 > 0]
     };
-    let pairs = samples.iter().zip(&samples[1..]);
-    pairs
-        .map(|(before, after)| {
-            let (before, after) = (on(before), on(after));
-            let switched = |coil: usize| usize::from(after[coil] && !before[coil]);
-            switched(0) + switched(1)
-        })
-        .sum()
+    let pairs = samples.clone().zip(samples.skip(1));
+    let switched = pairs.map(|(before, after)| {
+        let coils = on(before).into_iter().zip(on(after));
+        coils.filter(|(before, after)| !before & after).count()
+    });
+    switched.sum()
 }

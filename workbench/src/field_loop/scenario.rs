@@ -288,18 +288,7 @@ fn depth(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> Fiel
         first_seed,
         |_, _| {},
     );
-    let found = DepthFigures::of(&limited);
-    let mut figures = vec![
-        ScenarioFigure::new("out of the ground", found.out * 100.0, "%", Some(0.0)),
-        ScenarioFigure::new(
-            "depth further than 10 % from its mean",
-            found.beyond * 100.0,
-            "%",
-            Some(5.0),
-        ),
-        ScenarioFigure::new("mean depth", found.depth_m.mean * 100.0, "cm", None),
-        ScenarioFigure::new("coil activations", found.activations_per_min, "1/min", None),
-    ];
+    let mut figures = of_depth("", &DepthFigures::of(&limited)).to_vec();
     let course = if calibration.depth.fitted == Count(0) {
         limited
     } else {
@@ -318,41 +307,37 @@ fn depth(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> Fiel
     FieldRun::of(figures, &course[..course.len().min(30_000)])
 }
 
-/// Figures of depth control with the external sensor, and of position control on the same way.
-fn of_sensor(sensed: &[FieldSample], lever: &[FieldSample]) -> [ScenarioFigure; 5] {
-    let [sensed, lever] = [sensed, lever].map(DepthFigures::of);
+/// Figures of the depth, whose names begin with what they are of.
+fn of_depth(of: &str, found: &DepthFigures) -> [ScenarioFigure; 4] {
+    let figure = |name, value, unit, required| {
+        ScenarioFigure::new(&format!("{of}{name}"), value, unit, required)
+    };
+    let (out, beyond) = (found.out * 100.0, found.beyond * 100.0);
+    let mean_cm = found.depth_m.mean * 100.0;
     [
-        ScenarioFigure::new(
-            "depth sensor: out of the ground",
-            sensed.out * 100.0,
-            "%",
-            Some(0.0),
-        ),
-        ScenarioFigure::new(
-            "depth sensor: depth further than 10 % from its mean",
-            sensed.beyond * 100.0,
+        figure("out of the ground", out, "%", Some(0.0)),
+        figure(
+            "depth further than 10 % from its mean",
+            beyond,
             "%",
             Some(5.0),
         ),
-        ScenarioFigure::new(
-            "depth sensor: mean depth",
-            sensed.depth_m.mean * 100.0,
-            "cm",
-            None,
-        ),
-        ScenarioFigure::new(
-            "depth sensor: deviation of the depth over that of position control",
-            sensed.depth_m.deviation / lever.depth_m.deviation,
-            "",
-            None,
-        ),
-        ScenarioFigure::new(
-            "depth sensor: coil activations",
-            sensed.activations_per_min,
-            "1/min",
-            None,
-        ),
+        figure("mean depth", mean_cm, "cm", None),
+        figure("coil activations", found.activations_per_min, "1/min", None),
     ]
+}
+
+/// Figures of depth control with the external sensor, and of position control on the same way.
+fn of_sensor(sensed: &[FieldSample], lever: &[FieldSample]) -> [ScenarioFigure; 5] {
+    let [sensed, lever] = [sensed, lever].map(DepthFigures::of);
+    let [out, beyond, mean, activations] = of_depth("depth sensor: ", &sensed);
+    let deviation = ScenarioFigure::new(
+        "depth sensor: deviation of the depth over that of position control",
+        sensed.depth_m.deviation / lever.depth_m.deviation,
+        "",
+        None,
+    );
+    [out, beyond, mean, deviation, activations]
 }
 
 fn headland(model: &Model, calibration: &ValidCalibration, first_seed: u64) -> FieldRun {

@@ -25,9 +25,5 @@ pub fn row(figure: &ScenarioFigure) -> [String; 3] {
 /// The figures as a table for a terminal.
 #[must_use]
 pub fn text(figures: &[ScenarioFigure]) -> String {
-    let mut table = Table::new(HEADER);
-    for figure in figures {
-        table.row(row(figure));
-    }
-    format!("{table}\n")
+    format!("{}\n", Table::of(HEADER, figures.iter().map(row)))
 }

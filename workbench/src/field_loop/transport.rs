@@ -10,6 +10,7 @@
 //!
 //! The implement's inertia is in that force, and not in the body; its own pitch inertia is left out.
 
+use super::figures::activations;
 use crate::closed_loop::OIL_TEMPERATURE_C;
 use hitch_closed_loop::{ClosedLoop, Sample};
 use hitch_field::body::{Body, BodyConstants, GRAVITY_M_S2, Ground, HitchLoad};
@@ -197,12 +198,7 @@ impl RideFigures {
             let outputs = &sample.hitch.outputs;
             [outputs.lift_current.0, outputs.lower_current.0]
         };
-        let switched = samples.windows(2).map(|pair| {
-            let [before, after] = [currents(&pair[0]), currents(&pair[1])];
-            (0..2)
-                .filter(|&coil| before[coil] == 0 && after[coil] > 0)
-                .count()
-        });
+        let activations = activations(samples.iter().map(|sample| &sample.hitch)) as f64;
         Self {
             pitch_rad_s2: mean(&|sample| sample.pitch_rad_s2.powi(2)).sqrt(),
             heave_m_s2: mean(&|sample| sample.heave_m_s2.powi(2)).sqrt(),
@@ -212,7 +208,7 @@ impl RideFigures {
                 let amperes = currents(sample).map(|current| f64::from(current) * 1e-3);
                 amperes.iter().map(|current| current * current).sum()
             }),
-            activations_per_min: switched.sum::<usize>() as f64 / (count * STEP_S / 60.0),
+            activations_per_min: activations / (count * STEP_S / 60.0),
         }
     }
 }

@@ -78,7 +78,8 @@ impl DepthFigures {
             out: share(&|depth_m| depth_m <= 0.0),
             beyond: share(&|found_m| (found_m / depth_m.mean - 1.0).abs() > 0.1),
             depth_m,
-            activations_per_min: activations(work) as f64 / (count / 60e3),
+            activations_per_min: activations(work.iter().map(|sample| &sample.hitch)) as f64
+                / (count / 60e3),
         }
     }
 }

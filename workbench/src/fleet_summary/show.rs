@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use super::FleetSummary;
-use crate::text::{Table, known, significant, wrapped};
+use super::{EffectOfFleet, FleetSummary, Machine};
+use crate::text::{Table, joined, known, significant, wrapped};
 
 /// Machines that are listed in a text; a report has all.
 const LISTED: usize = 20;
@@ -11,34 +11,33 @@ const LISTED: usize = 20;
 impl fmt::Display for FleetSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}\n", wrapped(&self.sentence()))?;
-        let mut effects = Table::new([
-            "effect", "machines", "median", "least", "most", "unit", "differ",
-        ]);
-        for effect in &self.effects {
+        let effect = |effect: &EffectOfFleet| {
             let number = |value: f64| significant(value, 3);
             let sizes = [effect.median, effect.least, effect.most].map(number);
             let cells = [effect.effect.clone(), effect.machines.to_string()];
             let rest = [effect.unit.clone(), effect.differ.to_string()];
-            effects.row(cells.into_iter().chain(sizes).chain(rest));
-        }
+            cells.into_iter().chain(sizes).chain(rest)
+        };
         if !self.effects.is_empty() {
-            writeln!(f, "{effects}")?;
+            let effects = self.effects.iter().map(effect);
+            writeln!(f, "{}", Table::of(EffectOfFleet::HEADINGS, effects))?;
         }
-        let mut machines = Table::new(["machine", "verdict", "before", "after", "effects"]);
-        for machine in self.machines.iter().take(LISTED) {
+        let machine = |machine: &Machine| {
             let effects = machine.effects.iter().map(|(name, found)| {
                 let mark = if found.differs { "*" } else { "" };
                 format!("{name}{mark}")
             });
-            machines.row([
+            [
                 machine.campaign.clone(),
                 machine.verdict.clone(),
                 known(machine.error_before, 2),
                 known(machine.error_after, 2),
-                effects.collect::<Vec<_>>().join(" "),
-            ]);
-        }
-        write!(f, "{machines}")?;
+                joined(effects, " "),
+            ]
+        };
+        let header = ["machine", "verdict", "before", "after", "effects"];
+        let machines = self.machines.iter().take(LISTED).map(machine);
+        write!(f, "{}", Table::of(header, machines))?;
         if self.machines.len() > LISTED {
             writeln!(
                 f,
@@ -60,6 +59,13 @@ impl fmt::Display for FleetSummary {
     }
 }
 
+impl EffectOfFleet {
+    /// Column headings of a table of effects.
+    pub const HEADINGS: [&'static str; 7] = [
+        "effect", "machines", "median", "least", "most", "unit", "differ",
+    ];
+}
+
 impl FleetSummary {
     /// What the mark of a machine means.
     pub const MARK: &'static str = "*: the 95 % interval of the size excludes the median of the machines that have the effect. Of equal \
@@ -69,9 +75,7 @@ impl FleetSummary {
     #[must_use]
     pub fn sentence(&self) -> String {
         let verdicts = self.verdicts.iter();
-        let verdicts: Vec<String> = verdicts
-            .map(|(verdict, count)| format!("{count} {verdict}"))
-            .collect();
+        let verdicts = verdicts.map(|(verdict, count)| format!("{count} {verdict}"));
         let failed = match self.failed.len() {
             0 => String::new(),
             count => format!("; {count} without a result"),
@@ -79,7 +83,7 @@ impl FleetSummary {
         format!(
             "{} machines: {}{failed}. Errors in sigma, before and after; the largest first.",
             self.machines.len(),
-            verdicts.join(", ")
+            joined(verdicts, ", ")
         )
     }
 }

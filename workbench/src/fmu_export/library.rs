@@ -4,6 +4,7 @@ use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
+use crate::text::joined;
 
 /// The library's file beside the program, or where `cargo` or an installation puts it.
 ///
@@ -14,11 +15,11 @@ pub fn find(program: &Path) -> Result<PathBuf, Error> {
     let folders = folders(program);
     let mut files = folders.iter().map(|folder| folder.join(&name));
     files.find(|file| file.is_file()).ok_or_else(|| {
-        let shown: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
+        let shown = folders.iter().map(|folder| folder.display());
         Error::Usage(format!(
             "{name}: the library of the units is in none of {}; build it with `cargo build --release`, or put it \
              beside the program",
-            shown.join(", ")
+            joined(shown, ", ")
         ))
     })
 }

@@ -82,16 +82,13 @@ pub fn no_stdout(option: &str, path: Option<&Path>, why: &str) -> Result<(), Err
 /// # Errors
 /// If the folder does not exist or is not writable, or the name is that of a folder.
 pub fn check_writable(path: &Path) -> Result<(), Error> {
-    let fault = |source: io::Error| Error::Write {
-        path: path.to_path_buf(),
-        source,
-    };
     if is_stdout(path) || (path.exists() && !path.is_file() && !path.is_dir()) {
         return Ok(());
     }
-    check_name(path).map_err(fault)?;
+    check_name(path).map_err(Error::writing(path))?;
     // The temporary file is deleted at once.
-    temporary_file(folder_of(path)).map(drop).map_err(fault)
+    let temporary = temporary_file(folder_of(path));
+    temporary.map(drop).map_err(Error::writing(path))
 }
 
 /// The first of names without end that is free.
@@ -109,12 +106,8 @@ pub fn first_free(
 pub fn check_folder(path: &Path) -> Result<(), Error> {
     let there = path.ancestors().find(|folder| folder.exists());
     let folder = there.unwrap_or(Path::new("."));
-    temporary_file(folder)
-        .map(drop)
-        .map_err(|source| Error::Write {
-            path: path.to_path_buf(),
-            source,
-        })
+    let temporary = temporary_file(folder);
+    temporary.map(drop).map_err(Error::writing(path))
 }
 
 /// Checks that a folder of results is new and can be written.
@@ -138,10 +131,7 @@ pub fn check_new_folder(option: &str, path: &Path) -> Result<(), Error> {
 /// # Errors
 /// If one cannot be created.
 pub fn create_folder(path: &Path) -> Result<(), Error> {
-    fs::create_dir_all(path).map_err(|source| Error::Write {
-        path: path.to_path_buf(),
-        source,
-    })
+    fs::create_dir_all(path).map_err(Error::writing(path))
 }
 
 /// Checks a name for a file.
@@ -163,22 +153,27 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if is_stdout(path) {
         return print_bytes(bytes);
     }
-    let fault = |source: io::Error| Error::Write {
-        path: path.to_path_buf(),
-        source,
-    };
-    check_name(path).map_err(fault)?;
+    let fault = Error::writing(path);
+    check_name(path).map_err(&fault)?;
     if path.exists() && !path.is_file() {
         // A device or a pipe is written in place: a rename would replace it.
         return fs::write(path, bytes).map_err(fault);
     }
-    let mut beside = temporary_file(folder_of(path)).map_err(fault)?;
+    let mut beside = temporary_file(folder_of(path)).map_err(&fault)?;
     beside
         .write_all(bytes)
         .and_then(|()| beside.flush())
-        .map_err(fault)?;
+        .map_err(&fault)?;
     beside.persist(path).map_err(|error| fault(error.error))?;
     Ok(())
+}
+
+/// Writes a text to a file, if there is one.
+///
+/// # Errors
+/// As for [`write_file`].
+pub fn write_if(path: Option<&PathBuf>, text: impl FnOnce() -> String) -> Result<(), Error> {
+    path.map_or(Ok(()), |path| write_file(path, text().as_bytes()))
 }
 
 /// The name of a file without its extension, as name of its contents.

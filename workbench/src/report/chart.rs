@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use maud::{Markup, html};
 
 use super::scale::{Scale, extent};
+use crate::text::joined;
 
 const WIDTH_PX: f64 = 520.0;
 const HEIGHT_PX: f64 = 220.0;
@@ -83,18 +84,11 @@ impl Stroke {
     }
 }
 
-/// One line of a chart.
-#[derive(Debug, Clone)]
-pub struct Line<'a> {
-    /// Name, for screen readers.
-    pub name: &'a str,
-    /// Style.
-    pub stroke: Stroke,
-    /// Values along the axis.
-    pub x: &'a [f64],
-    /// Values; NaN where missing.
-    pub y: &'a [f64],
-}
+/// Values along the axis, and of a line: NaN where missing.
+pub type Points = (Vec<f64>, Vec<f64>);
+
+/// A line of a chart: its name, its style and its values.
+pub type Line = (String, Stroke, Points);
 
 /// A filled band between two lines.
 #[derive(Debug, Clone)]
@@ -114,40 +108,37 @@ pub struct Band<'a> {
 pub struct Chart<'a> {
     /// Caption, below the chart.
     pub caption: String,
-    /// Axis titles with unit.
-    pub x_title: &'a str,
-    /// Axis titles with unit.
-    pub y_title: &'a str,
-    /// Bands behind the lines.
-    pub bands: Vec<Band<'a>>,
+    /// Titles of the axes, with unit.
+    pub axes: [&'a str; 2],
     /// The lines, in drawing order.
-    pub lines: Vec<Line<'a>>,
+    pub lines: Vec<Line>,
 }
 
 impl Chart<'_> {
     /// The chart as a figure; empty if no line has a value.
     pub fn figure(&self) -> Markup {
-        let xs = extent(self.lines.iter().flat_map(|line| line.x.iter().copied()));
-        let limits = self.bands.iter().flat_map(|band| [band.low, band.high]);
-        let values = self.lines.iter().map(|line| line.y).chain(limits);
+        self.figure_with(&[])
+    }
+
+    /// The chart as a figure with bands behind the lines; empty if no line has a value.
+    pub fn figure_with(&self, bands: &[Band<'_>]) -> Markup {
+        let lines = || self.lines.iter().map(|(.., (x, y))| (x, y));
+        let xs = extent(lines().flat_map(|(x, _)| x.iter().copied()));
+        let limits = bands.iter().flat_map(|band| [band.low, band.high]);
+        let values = lines().map(|(_, y)| y.as_slice()).chain(limits);
         let ys = extent(values.flatten().copied());
         let (Some(xs), Some(ys)) = (xs, ys) else {
             return html! { figure { figcaption { (self.caption) ": no values" } } };
         };
         let x = Scale::new(xs, (LEFT_PX, WIDTH_PX - RIGHT_PX));
         let y = Scale::new(ys, (HEIGHT_PX - BOTTOM_PX, TOP_PX));
-        let bands = self.bands.iter().map(|band| band.name);
-        let names: Vec<&str> = self
-            .lines
-            .iter()
-            .map(|line| line.name)
-            .chain(bands)
-            .collect();
+        let names = self.lines.iter().map(|(name, ..)| name.as_str());
+        let names = joined(names.chain(bands.iter().map(|band| band.name)), ", ");
         html! { figure {
             svg viewBox=(format!("0 0 {WIDTH_PX} {HEIGHT_PX}")) role="img"
-                aria-label=(format!("{}: {}", self.caption, names.join(", "))) {
+                aria-label=(format!("{}: {names}", self.caption)) {
                 (self.axes(&x, &y))
-                @for band in &self.bands { path.band d=(area(band, &x, &y)) {} }
+                @for band in bands { path.band d=(area(band, &x, &y)) {} }
                 @for line in &self.lines { (draw(line, &x, &y)) }
             }
             figcaption { (self.caption) }
@@ -174,9 +165,9 @@ impl Chart<'_> {
             g.soft text-anchor="middle" { @for tick in x.ticks(X_TICKS) {
                 text x=(px(x.px(tick))) y=(base + 17.0) { (x.label(tick, X_TICKS)) }
             } }
-            text x=((LEFT_PX + right) / 2.0) y=(HEIGHT_PX - 4.0) text-anchor="middle" { (self.x_title) }
+            text x=((LEFT_PX + right) / 2.0) y=(HEIGHT_PX - 4.0) text-anchor="middle" { (self.axes[0]) }
             text x="12" y=(middle) text-anchor="middle" transform=(format!("rotate(-90 12 {middle})")) {
-                (self.y_title)
+                (self.axes[1])
             }
         }
     }
@@ -192,9 +183,9 @@ pub fn legend(entries: &[(Stroke, &str)]) -> Markup {
     } } } }
 }
 
-fn draw(line: &Line<'_>, x: &Scale, y: &Scale) -> Markup {
+fn draw((_, stroke, points): &Line, x: &Scale, y: &Scale) -> Markup {
     html! {
-        path class=(line.stroke.class()) d=(path(line, x, y)) stroke-width=(line.stroke.width()) {}
+        path class=(stroke.class()) d=(path(points, x, y)) stroke-width=(stroke.width()) {}
     }
 }
 
@@ -214,11 +205,11 @@ fn area(band: &Band<'_>, x: &Scale, y: &Scale) -> String {
 
 /// The line as SVG path data in whole pixels, relative to the point before; interrupted at dropouts. Points on the straight
 /// line through their neighbours are left out.
-fn path(line: &Line<'_>, x: &Scale, y: &Scale) -> String {
+fn path((along, values): &Points, x: &Scale, y: &Scale) -> String {
     let mut data = String::new();
     let mut piece: Vec<(i32, i32)> = Vec::new();
-    for i in thinned(line.y) {
-        let (Some(at), value) = (line.x.get(i), line.y[i]) else {
+    for i in thinned(values) {
+        let (Some(at), value) = (along.get(i), values[i]) else {
             break;
         };
         if !value.is_finite() {
@@ -301,15 +292,6 @@ fn px(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn flow<'a>(x: &'a [f64], y: &'a [f64]) -> Line<'a> {
-        Line {
-            name: "flow",
-            stroke: Stroke::After,
-            x,
-            y,
-        }
-    }
-
     #[test]
     fn long_logs_are_thinned_but_keep_their_peaks() {
         let mut values = vec![0.0; 10_000];
@@ -320,8 +302,7 @@ mod tests {
 
     #[test]
     fn a_line_breaks_at_a_dropout() {
-        let (x, y) = ([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, f64::NAN, 1.0]);
-        let line = flow(&x, &y);
+        let line = (vec![0.0, 1.0, 2.0, 3.0], vec![0.0, 1.0, f64::NAN, 1.0]);
         let (sx, sy) = (
             Scale::new((0.0, 3.0), (0.0, 30.0)),
             Scale::new((0.0, 1.0), (10.0, 0.0)),
@@ -334,7 +315,7 @@ mod tests {
         let x: Vec<f64> = (0..100).map(f64::from).collect();
         let mut y = vec![0.0; 100];
         y[40] = 1.0;
-        let line = flow(&x, &y);
+        let line = (x, y);
         let (sx, sy) = (
             Scale::new((0.0, 99.0), (0.0, 99.0)),
             Scale::new((0.0, 1.0), (10.0, 0.0)),
@@ -359,18 +340,10 @@ mod tests {
 
     #[test]
     fn a_chart_of_nothing_says_so() {
-        let line = Line {
-            name: "flow",
-            stroke: Stroke::After,
-            x: &[0.0],
-            y: &[f64::NAN],
-        };
         let chart = Chart {
             caption: "c".into(),
-            x_title: "t",
-            y_title: "q",
-            bands: Vec::new(),
-            lines: vec![line],
+            axes: ["t", "q"],
+            lines: vec![("flow".into(), Stroke::After, (vec![0.0], vec![f64::NAN]))],
         };
         assert!(chart.figure().into_string().contains("no values"));
     }

@@ -3,22 +3,17 @@
 use hitch_plant::Model;
 use maud::{Markup, html};
 
-use super::error_map::error_map;
+use super::evidence::evidence;
 use super::page;
-use super::run_views::run_views;
-use super::runs::runs;
 use crate::comparison::{Comparison, Evaluated};
 
 /// The report as one HTML document.
 pub fn page(comparison: &Comparison, evaluated: &Evaluated, model: &Model) -> String {
-    let views = run_views((model, evaluated), None);
     let title = format!("{} against {}", comparison.model, comparison.campaign);
     let content = html! {
         h1 { (title) }
         p.lead { "Error " strong { (format!("{:.2}", comparison.error)) } " sigma; a perfect model has 1.00, the noise of the instruments." }
-        (error_map((model, evaluated), None))
-        h2 { "Measured against simulated" }
-        (runs(&views))
+        (evidence((model, evaluated), None))
         h2 { "By channel" }
         (channels(comparison))
     };
@@ -34,11 +29,9 @@ fn channels(comparison: &Comparison) -> Markup {
             .into_iter()
             .chain(numbers)
             .chain(rest)
-            .collect()
     };
-    let rows: Vec<Vec<String>> = comparison.channels.iter().map(row).collect();
     page::table(
         &["channel", "error, sigma", "rms", "noise", "unit", "samples"],
-        &rows,
+        comparison.channels.iter().map(row),
     )
 }

@@ -1,7 +1,5 @@
 //! The report of `hitch diagnose`.
 
-use std::sync::Arc;
-
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::diagnosis;
@@ -10,16 +8,14 @@ use hitch_identification::selection::evidence::SIGNIFICANT;
 use hitch_plant::Model;
 use maud::{Markup, html};
 
-use super::error_map::error_map;
+use super::evidence::evidence;
 use super::explanation_page::channels;
 use super::next_figure::next_figure;
-use super::run_views::run_views;
-use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
 use crate::comparison::Evaluated;
 use crate::explanation::{Candidate, Diagnosis, UNSUITABLE_BASE};
-use crate::text::words;
+use crate::text::{joined, words};
 
 /// Number of candidates that are shown as bars, and in the unfolded table.
 const BARS: usize = 8;
@@ -35,7 +31,7 @@ pub fn page(
         "Single effects that {} may lack on {}",
         shown.head.model, shown.head.campaign
     );
-    let evaluated = |fit: &Fit| Evaluated::fitted(Arc::new(experiment.clone()), fit.clone(), model);
+    let evaluated = |fit: &Fit| Evaluated::of(experiment, fit, model);
     let before = evaluated(&found.base);
     let accepted = |best: &&candidate::Candidate| best.likelihood_ratio >= SIGNIFICANT;
     let after = found.candidates.first().filter(accepted);
@@ -48,9 +44,7 @@ pub fn page(
         (staircase(&bars(shown)))
         (candidates(&shown.candidates))
         (next_figure(&shown.next))
-        (error_map(before, after))
-        h2 { "Measured against simulated" }
-        (runs(&run_views(before, after)))
+        (evidence(before, after))
         h2 { "By channel" }
         (channels(&shown.head))
     };
@@ -88,24 +82,9 @@ fn bars(shown: &Diagnosis) -> Vec<staircase::Step> {
 
 fn candidates(candidates: &[Candidate]) -> Markup {
     let row = |candidate: &Candidate| {
-        let parameters: Vec<String> = candidate
-            .parameters
-            .iter()
-            .map(ToString::to_string)
-            .collect();
-        let others = &candidate.indistinguishable;
-        let name = if others.is_empty() {
-            candidate.name()
-        } else {
-            format!(
-                "{}\nnot to be told from {}",
-                candidate.name(),
-                others.join(", ")
-            )
-        };
-        vec![
-            name,
-            parameters.join("\n"),
+        [
+            page::with_twins(candidate.name(), &candidate.indistinguishable),
+            joined(&candidate.parameters, "\n"),
             format!("{:.1} %", 100.0 * candidate.explains),
             format!("{:.2}", candidate.error_after),
             words::probable(candidate.confidence),
@@ -120,7 +99,7 @@ fn candidates(candidates: &[Candidate]) -> Markup {
         "confidence",
         "detectability",
     ];
-    let rows: Vec<Vec<String>> = candidates.iter().map(row).collect();
+    let rows: Vec<_> = candidates.iter().map(row).collect();
     let (first, others) = rows.split_at(BARS.min(rows.len()));
     html! {
         (page::table(&header, first))

@@ -3,8 +3,8 @@
 use hitch_draft::block::Block;
 use maud::{Markup, html};
 
-use super::chart::Stroke;
-use super::drawn::{Drawn, Points, drawn};
+use super::chart::{Chart, Points, Stroke};
+use super::drawn::drawn;
 use super::page;
 use crate::draft::DraftResult;
 
@@ -14,9 +14,6 @@ const POINTS: u32 = 40;
 /// The whole page.
 #[must_use]
 pub fn page(result: &DraftResult) -> String {
-    let rows = |rows: Vec<[String; 5]>| -> Vec<Vec<String>> {
-        rows.into_iter().map(|row| row.to_vec()).collect()
-    };
     let title = format!("Draft of {}", result.campaign);
     let content = html! {
         h1 { (title) }
@@ -24,9 +21,9 @@ pub fn page(result: &DraftResult) -> String {
         (charts(result))
         p.note { "Bars: mean and standard deviation of a run, with the hidden effects if there are any. The law is without them." }
         h2 { "Coefficients" }
-        (page::table(&DraftResult::COEFFICIENTS, &rows(result.coefficient_rows())))
+        (page::table(&DraftResult::COEFFICIENTS, result.coefficient_rows()))
         h2 { "Hidden effects" }
-        (page::table(&DraftResult::EFFECTS, &rows(result.effect_rows())))
+        (page::table(&DraftResult::EFFECTS, result.effect_rows()))
         @for remark in result.remarks() { p { (remark) } }
     };
     page::page(&title, &content)
@@ -70,7 +67,7 @@ fn charts(result: &DraftResult) -> Markup {
         };
         let measured: Points = group.iter().flat_map(bar).unzip();
         let line = |name: &str, stroke, points| (name.to_owned(), stroke, points);
-        Drawn {
+        Chart {
             caption: format!("Draft at {depth_cm:.0} cm"),
             axes: ["speed, km/h", "draft, kN"],
             lines: vec![
@@ -90,7 +87,7 @@ fn charts(result: &DraftResult) -> Markup {
             ],
         }
     };
-    let charts: Vec<Drawn> = groups.map(chart).collect();
+    let charts: Vec<Chart<'static>> = groups.map(chart).collect();
     drawn("Draft over speed by depth", &charts)
 }
 

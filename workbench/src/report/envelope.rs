@@ -1,6 +1,7 @@
 //! The samples of a long run as a screen shows them: the minimum and the maximum of each column of pixels.
 
-use super::run_view::{ChannelView, RunView, Simulated};
+use super::run_view::{ChannelView, RunView};
+use crate::web::plot::SimulatedChannel;
 
 /// A run with at most two samples in each of `columns` columns of equal numbers of samples; an unchanged one if it is shorter.
 ///
@@ -18,9 +19,9 @@ pub fn envelope(view: &RunView, columns: usize) -> RunView {
         let ends = |part: &[f64]| [part[0], part[part.len() / 2]];
         values.chunks(size).flat_map(ends).collect()
     };
-    let simulated = |of: &Simulated| Simulated {
-        samples: signal(&of.samples),
-        residuals: signal(&of.residuals),
+    let simulated = |of: &SimulatedChannel<Vec<f64>>| SimulatedChannel {
+        simulated: signal(&of.simulated),
+        residual: signal(&of.residual),
         error: of.error,
     };
     let channel = |of: &ChannelView| ChannelView {

@@ -1,22 +1,17 @@
 //! The report of `hitch explain`.
 
-use std::sync::Arc;
-
 use hitch_identification::estimation::fit::Fit;
 use maud::{Markup, html};
 
-use super::error_map::error_map;
+use super::evidence::evidence;
 use super::next_figure::next_figure;
 use super::rest_figure::{picture, suggestion};
-use super::run_views::run_views;
-use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
 use crate::base_model::fit::ShownConstant;
 use crate::comparison::Evaluated;
 use crate::explanation::{ChannelFigures, Corrected, Explanation, Found, Head, Step};
-use crate::text::known;
-use crate::text::words;
+use crate::text::{joined, known, words};
 
 /// The report as one HTML document.
 pub fn page(found: &Found) -> String {
@@ -46,13 +41,7 @@ pub fn findings(found: &Found) -> Markup {
 
 /// The evidence: error map, all runs, and errors by channel.
 pub fn details(found: &Found) -> Markup {
-    let evaluated = |fit: &Fit| {
-        Evaluated::fitted(
-            Arc::new(found.experiment.clone()),
-            fit.clone(),
-            &found.model,
-        )
-    };
+    let evaluated = |fit: &Fit| Evaluated::of(&found.experiment, fit, &found.model);
     let (before, after) = (
         evaluated(&found.explanation.before),
         evaluated(&found.explanation.after),
@@ -61,9 +50,7 @@ pub fn details(found: &Found) -> Markup {
     let changed = is_changed.then_some((&found.model, &after));
     let before = (&found.model, &before);
     html! {
-        (error_map(before, changed))
-        h2 { "Measured against simulated" }
-        (runs(&run_views(before, changed)))
+        (evidence(before, changed))
         h2 { "By channel" }
         (channels(&found.shown.head))
     }
@@ -113,8 +100,8 @@ fn stairs(shown: &Explanation) -> Vec<staircase::Step> {
 
 /// Constants that the explanation corrected.
 fn corrected_constants(corrected: &Corrected, error_before: f64) -> Markup {
-    let rows = corrected.moved().map(|constant| constant.cells().to_vec());
-    let rows: Vec<Vec<String>> = rows.collect();
+    let moved = corrected.moved().map(ShownConstant::cells);
+    let moved: Vec<_> = moved.collect();
     html! {
         p { (corrected.sentence(error_before)) }
         @if let Some(reason) = &corrected.withheld {
@@ -125,24 +112,17 @@ fn corrected_constants(corrected: &Corrected, error_before: f64) -> Markup {
                 li { (valve) ": flow " (format!("{:+.1} to {:+.1}", 100.0 * low, 100.0 * high)) " % of the declared curve" }
             }
         }
-        @if !rows.is_empty() {
-            (page::table(&ShownConstant::HEADINGS, &rows))
+        @if !moved.is_empty() {
+            (page::table(&ShownConstant::HEADINGS, &moved))
         }
     }
 }
 
 fn steps(steps: &[Step]) -> Markup {
     let row = |step: &Step| {
-        let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
-        let twins: Vec<String> = step.alternatives.iter().map(ToString::to_string).collect();
-        let name = if twins.is_empty() {
-            step.name()
-        } else {
-            format!("{}\nnot to be told from {}", step.name(), twins.join(", "))
-        };
-        vec![
-            name,
-            parameters.join("\n"),
+        [
+            page::with_twins(step.name(), &step.alternatives),
+            joined(&step.parameters, "\n"),
             format!("{:.2} → {:.2}", step.error_before, step.error_after),
             format!(
                 "{} → {}",
@@ -161,9 +141,8 @@ fn steps(steps: &[Step]) -> Markup {
         "confidence",
         "detectability",
     ];
-    let rows: Vec<Vec<String>> = steps.iter().map(row).collect();
     html! {
-        (page::table(&header, &rows))
+        (page::table(&header, steps.iter().map(row)))
         (page::meanings(steps.iter().map(|step| (step.name(), step.parameters.as_slice()))))
         p.note { (words::sentences(&[words::HELD_OUT, words::CONFIDENCE, words::DETECTABILITY, words::ANGLE, words::SIGMA])) }
     }
@@ -173,12 +152,11 @@ fn steps(steps: &[Step]) -> Markup {
 pub fn channels(head: &Head) -> Markup {
     let row = |(channel, values): (&&str, &ChannelFigures)| {
         let names = [(*channel).to_owned()].into_iter();
-        names.chain(values.cells()).collect()
+        names.chain(values.cells())
     };
-    let rows: Vec<Vec<String>> = head.channels.iter().map(row).collect();
     let header: Vec<&str> = ["channel"]
         .into_iter()
         .chain(ChannelFigures::HEADINGS)
         .collect();
-    page::table(&header, &rows)
+    page::table(&header, head.channels.iter().map(row))
 }

@@ -3,8 +3,8 @@
 use hitch_plant::Model;
 use maud::{Markup, html};
 
-use super::chart::Stroke;
-use super::drawn::{Drawn, drawn};
+use super::chart::{Chart, Stroke};
+use super::drawn::drawn;
 use super::page;
 use crate::field_loop::scenario::FieldRun;
 use crate::field_loop::show::{HEADER, row};
@@ -15,15 +15,10 @@ const EVERY: usize = 20;
 /// The whole page.
 #[must_use]
 pub fn page(scenario: &str, model: &Model, calibration: &str, run: &FieldRun) -> String {
-    let rows: Vec<Vec<String>> = run
-        .figures
-        .iter()
-        .map(|figure| row(figure).to_vec())
-        .collect();
     let content = html! {
         h1 { "Scenario " (scenario) " on " (model.name) }
         p { "Calibration: " (calibration) ", with pins, slip guard and ride damping fitted." }
-        (page::table(&HEADER, &rows))
+        (page::table(&HEADER, run.figures.iter().map(row)))
         h2 { "Course" }
         (course(run))
     };
@@ -43,7 +38,7 @@ fn course(run: &FieldRun) -> Markup {
             indices().filter_map(|index| Some((times(index), value(run.field.get(index)?))));
         (name.to_owned(), Stroke::After, points.unzip())
     };
-    let chart = |caption: &str, y_title, lines| Drawn {
+    let chart = |caption: &str, y_title, lines| Chart {
         caption: caption.to_owned(),
         axes: ["time, s", y_title],
         lines,

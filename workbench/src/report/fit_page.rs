@@ -1,7 +1,5 @@
 //! The report of `hitch model fit`: flow curves and constants with their intervals, and the runs before and after.
 
-use std::sync::Arc;
-
 use hitch_identification::base::BaseFit;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::estimation::fit::Fit;
@@ -9,12 +7,11 @@ use hitch_plant::units::{bar_from_pa, lpm_from_m3_s};
 use hitch_plant::{Model, Valve};
 use maud::{Markup, html};
 
-use super::chart::Stroke;
-use super::drawn::{Drawn, Points, drawn};
-use super::error_map::error_map;
+use super::chart::{Chart, Line, Points, Stroke};
+use super::drawn::drawn;
+use super::evidence::evidence;
 use super::page;
-use super::run_views::run_views;
-use super::runs::runs;
+use crate::base_model::data_sheet::VALVES;
 use crate::base_model::fit::{ShownBaseFit, ShownConstant, ShownPoint, digits};
 use crate::comparison::Evaluated;
 
@@ -44,13 +41,7 @@ pub fn page(shown: &Shown<'_>) -> String {
 
 fn sections(shown: &Shown<'_>) -> Markup {
     let told = shown.told;
-    let evaluated = |fit: &Fit| {
-        Evaluated::fitted(
-            Arc::new(shown.experiment.clone()),
-            fit.clone(),
-            shown.declared,
-        )
-    };
+    let evaluated = |fit: &Fit| Evaluated::of(shown.experiment, fit, shown.declared);
     let (before, after) = (evaluated(&shown.fit.before), evaluated(&shown.fit.after));
     let before = (shown.declared, &before);
     let after = Some((&shown.fit.model, &after));
@@ -68,27 +59,25 @@ fn sections(shown: &Shown<'_>) -> Markup {
              points. A point that the campaign does not determine follows its neighbours. Deviations are those of the points \
              beside the shift of the whole curve with its threshold."
         }
-        @for (valve, title) in [(Valve::Lift, "Lift valve"), (Valve::Lower, "Lowering valve")] {
+        @for (valve, title) in VALVES {
             h3 { (title) }
             (curve(shown, valve, title))
             (deviation(told, valve, title))
         }
         (page::table(
             &["valve and current, A", "declared, l/min", "fitted, l/min", "95 % interval, l/min", "determined"],
-            &told.curves.iter().map(point).collect::<Vec<_>>(),
+            told.curves.iter().map(point),
         ))
         h2 { "Constants" }
         (page::table(
             &["constant", "unit", "declared", "tolerance, ±1 σ", "fitted", "95 % interval", "determined", "moved"],
-            &told.constants.iter().map(constant).collect::<Vec<_>>(),
+            told.constants.iter().map(constant),
         ))
         p.note {
             "Tolerance: that of data sheets, the prior of the fit. A constant that the campaign does not determine keeps its \
              declared value; its interval is that of the data sheet, or little less."
         }
-        (error_map(before, after))
-        h2 { "Measured against simulated" }
-        (runs(&run_views(before, after)))
+        (evidence(before, after))
     }
 }
 
@@ -107,7 +96,7 @@ fn curve(shown: &Shown<'_>, valve: Valve, title: &str) -> Markup {
         ("fitted", Stroke::After, of(&shown.fit.model)),
     ];
     let drop_bar = bar_from_pa(valve.of(shown.declared.constants()).reference_drop_pa);
-    let chart = Drawn {
+    let chart = Chart {
         caption: format!("{title}, flow at {drop_bar:.0} bar"),
         axes: ["current, A", "flow, l/min"],
         lines: lines(curves.into(), shown.told, valve, |_, flow_lpm| flow_lpm),
@@ -126,7 +115,7 @@ fn deviation(told: &ShownBaseFit, valve: Valve, title: &str) -> Markup {
         .filter(|point| point.valve == valve.key());
     let fitted = points.map(|point| (point.current_a, of(point, point.fitted_lpm)));
     let curves = vec![("fitted", Stroke::After, fitted.unzip())];
-    let chart = Drawn {
+    let chart = Chart {
         caption: format!("{title}, deviation of the points"),
         axes: ["current, A", "deviation, %"],
         lines: lines(curves, told, valve, of),
@@ -141,7 +130,7 @@ fn lines(
     told: &ShownBaseFit,
     valve: Valve,
     of: Of,
-) -> Vec<(String, Stroke, Points)> {
+) -> Vec<Line> {
     let intervals = |determined: bool| {
         let points = told.curves.iter();
         let own = points.filter(|point| point.valve == valve.key() && point.low_lpm.is_finite());

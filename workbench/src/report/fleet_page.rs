@@ -30,7 +30,7 @@ pub fn page(summary: &FleetSummary) -> String {
 
 fn effects(effects: &[EffectOfFleet]) -> Markup {
     html! { div.scroll tabindex="0" role="group" aria-label="Effects" { table {
-        thead { tr { @for name in ["effect", "machines", "median", "least", "most", "unit", "differ"] { th scope="col" { (name) } } } }
+        thead { tr { @for name in EffectOfFleet::HEADINGS { th scope="col" { (name) } } } }
         tbody { @for effect in effects { tr {
             th scope="row" { (effect.effect) }
             td { (effect.machines) }

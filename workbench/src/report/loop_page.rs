@@ -31,11 +31,6 @@ pub fn page(shown: &Shown) -> String {
 
 fn sections(shown: &Shown) -> Markup {
     let run = shown.run;
-    let rows: Vec<Vec<String>> = run
-        .results
-        .iter()
-        .map(|result| row(result).to_vec())
-        .collect();
     html! {
         h1 { "Closed loop on " (shown.model.name) }
         p { "Calibration: " (shown.calibration)
@@ -52,7 +47,7 @@ fn sections(shown: &Shown) -> Markup {
         (steps::section(run))
         (course::section(run))
         h2 { "Figures of every move" }
-        (page::table(&HEADER, &rows))
+        (page::table(&HEADER, run.results.iter().map(row)))
     }
 }
 

@@ -10,6 +10,7 @@ pub mod draft_page;
 mod drawn;
 mod envelope;
 pub mod error_map;
+mod evidence;
 pub mod explanation_page;
 pub mod field_page;
 pub mod fit_page;

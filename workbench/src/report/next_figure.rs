@@ -4,8 +4,8 @@ use hitch_campaign::Run;
 use hitch_plant::Channel;
 use maud::{Markup, html};
 
-use super::chart::Stroke;
-use super::drawn::{Drawn, drawn};
+use super::chart::{Chart, Stroke};
+use super::drawn::drawn;
 use crate::explanation::{Next, TWO_LINES};
 
 /// Titles of the axis of time.
@@ -35,7 +35,7 @@ pub fn next_figure(next: &Next) -> Markup {
 }
 
 /// The currents of a run, then each channel as every model expects it.
-fn charts(expected: &[(&str, Vec<Run>)], index: usize) -> Vec<Drawn> {
+fn charts(expected: &[(&str, Vec<Run>)], index: usize) -> Vec<Chart<'static>> {
     let runs: Vec<(&str, &Run)> = expected
         .iter()
         .filter_map(|(title, runs)| Some((*title, runs.get(index)?)))
@@ -50,7 +50,7 @@ fn charts(expected: &[(&str, Vec<Run>)], index: usize) -> Vec<Drawn> {
             (first.time_s.clone(), values.clone()),
         )
     };
-    let currents = Drawn {
+    let currents = Chart {
         caption: "Currents".to_owned(),
         axes: [TIME, "current, A"],
         lines: vec![
@@ -65,7 +65,7 @@ fn charts(expected: &[(&str, Vec<Run>)], index: usize) -> Vec<Drawn> {
         };
         let strokes = [Stroke::After, Stroke::Before];
         let lines: Vec<_> = runs.iter().zip(strokes).filter_map(line).collect();
-        (!lines.is_empty()).then(|| Drawn {
+        (!lines.is_empty()).then(|| Chart {
             caption: channel.title().to_owned(),
             axes: [TIME, axis(channel)],
             lines,

@@ -1,8 +1,10 @@
 //! Page frame of a report.
+use std::fmt::Display;
+
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::explanation::{self, Parameter};
-
+use crate::text::joined;
 use crate::web;
 
 /// Style of every report: wide tables scroll; sections are not split in print.
@@ -42,16 +44,29 @@ pub fn page(title: &str, content: &Markup) -> String {
 
 /// A table of text cells with a header row; the first column has the names of the rows. Cells may have several lines. A long
 /// table is folded.
-pub fn table(header: &[&str], rows: &[Vec<String>]) -> Markup {
+pub fn table<R>(header: &[&str], rows: impl IntoIterator<Item = R>) -> Markup
+where
+    R: IntoIterator<Item: AsRef<str>>,
+{
+    let rows: Vec<R> = rows.into_iter().collect();
+    let count = rows.len();
     let table = html! {
         div.scroll tabindex="0" role="group" aria-label="Table" { table {
             thead { tr { @for name in header { th scope="col" { (name) } } } }
-            tbody { @for row in rows { tr { @for (i, cell) in row.iter().enumerate() {
-                @if i == 0 { th scope="row" { (lines(cell)) } } @else { td { (lines(cell)) } }
+            tbody { @for row in rows { tr { @for (i, cell) in row.into_iter().enumerate() {
+                @if i == 0 { th scope="row" { (lines(cell.as_ref())) } } @else { td { (lines(cell.as_ref())) } }
             } } } }
         } }
     };
-    folded(&table, rows.len())
+    folded(&table, count)
+}
+
+/// The name of an effect with those that are indistinguishable from it.
+pub fn with_twins(name: String, twins: &[impl Display]) -> String {
+    if twins.is_empty() {
+        return name;
+    }
+    format!("{name}\nnot to be told from {}", joined(twins, ", "))
 }
 
 /// What the parameters of effects mean, by name of the effect; folded.

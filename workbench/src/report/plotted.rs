@@ -30,15 +30,20 @@ pub fn charts(label: &str, legend: &Markup, charts: &[Chart<'_>]) -> Markup {
 }
 
 fn view(charts: &[Chart<'_>]) -> Option<RowPlot<Column, Column>> {
-    let lines = || charts.iter().flat_map(|chart| &chart.lines);
-    let (first, last) = extent(lines().flat_map(|line| line.x.iter().copied()))?;
-    let common = lines().next()?.x;
+    let abscissas = || {
+        charts
+            .iter()
+            .flat_map(|chart| &chart.lines)
+            .map(|(.., (x, _))| x)
+    };
+    let (first, last) = extent(abscissas().flatten().copied())?;
+    let common = abscissas().next()?;
     let mut rows: Vec<_> = charts.iter().map(|chart| row(chart, common)).collect();
     if let [alone] = rows.as_mut_slice() {
         alone.height = Some(ALONE_PX);
     }
     Some(RowPlot {
-        x_title: charts.first()?.x_title.to_owned(),
+        x_title: charts.first()?.axes[0].to_owned(),
         span: [first, last],
         time_s: column(common, TIME_S),
         rows,
@@ -46,16 +51,16 @@ fn view(charts: &[Chart<'_>]) -> Option<RowPlot<Column, Column>> {
 }
 
 fn row(chart: &Chart<'_>, common: &[f64]) -> PlotRow<Column, Column> {
-    let line = |line: &Line<'_>| PlotLine {
-        name: line.name.to_owned(),
-        key: line.name.to_owned(),
-        colour: line.stroke.colour(),
-        dash: Some(line.stroke.dashes()),
-        width: Some(line.stroke.width()),
-        x: (line.x != common).then(|| column(line.x, TIME_S)),
-        y: column(line.y, 0.0),
+    let line = |(name, stroke, (x, y)): &Line| PlotLine {
+        name: name.clone(),
+        key: name.clone(),
+        colour: stroke.colour(),
+        dash: Some(stroke.dashes()),
+        width: Some(stroke.width()),
+        x: (x != common).then(|| column(x, TIME_S)),
+        y: column(y, 0.0),
     };
-    let unit = chart.y_title.rsplit(", ").next().unwrap_or_default();
+    let unit = chart.axes[1].rsplit(", ").next().unwrap_or_default();
     PlotRow {
         title: chart.caption.clone(),
         unit: unit.to_owned(),
@@ -71,19 +76,11 @@ mod tests {
 
     #[test]
     fn a_line_has_its_own_abscissa_only_if_it_differs() {
-        let (x, other, y) = ([0.0, 1.0], [0.0, 2.0], [3.0, 4.0]);
-        let line = |x| Line {
-            name: "angle",
-            stroke: Stroke::After,
-            x,
-            y: &y,
-        };
+        let line = |x| ("angle".to_owned(), Stroke::After, (x, vec![3.0, 4.0]));
         let chart = Chart {
             caption: "Rocker angle".to_owned(),
-            x_title: "time, s",
-            y_title: "angle, deg",
-            bands: Vec::new(),
-            lines: vec![line(&x), line(&other)],
+            axes: ["time, s", "angle, deg"],
+            lines: vec![line(vec![0.0, 1.0]), line(vec![0.0, 2.0])],
         };
         let view = view(&[chart]).unwrap();
         assert_eq!(view.span, [0.0, 2.0]);

@@ -3,11 +3,13 @@
 use hitch_quantities::calibration::valve_table::{ValvePoint, ValveTable};
 use maud::{Markup, html};
 
-use super::chart::Stroke;
-use super::drawn::{Drawn, drawn};
+use super::chart::{Chart, Stroke};
+use super::drawn::drawn;
 use super::page;
 use super::same_move::compared;
+use crate::closed_loop::MoveResult;
 use crate::closed_loop::rebuild::Rebuild;
+use crate::closed_loop::show::name;
 use crate::text::known;
 
 /// Conversion from microlitres per second to litres per minute.
@@ -44,7 +46,7 @@ fn valve_maps(rebuild: &Rebuild) -> Markup {
             &rebuild.rebuilt.lower,
         ),
     ];
-    let maps = maps.map(|(caption, nominal, rebuilt)| Drawn {
+    let maps = maps.map(|(caption, nominal, rebuilt)| Chart {
         caption: caption.to_owned(),
         axes: ["current, A", "flow, l/min"],
         lines: vec![
@@ -65,27 +67,18 @@ fn course(rebuild: &Rebuild, index: usize) -> Markup {
 }
 
 fn moves(rebuild: &Rebuild) -> Markup {
-    let rows: Vec<Vec<String>> = rebuild
-        .before
-        .results
-        .iter()
-        .zip(&rebuild.after.results)
-        .map(|(before, after)| {
-            let pair =
-                |before: f64, after: f64| format!("{} → {}", known(before, 2), known(after, 2));
-            vec![
-                format!(
-                    "{:.1} to {:.1} deg, {:.0} kg",
-                    before.from_deg, before.to_deg, before.load_kg
-                ),
-                pair(before.time_s, after.time_s),
-                known(before.shortest_s, 2),
-                pair(before.ratio, after.ratio),
-                pair(before.overshoot_deg, after.overshoot_deg),
-                pair(before.final_error_deg, after.final_error_deg),
-            ]
-        })
-        .collect();
+    let pair = |before: f64, after: f64| format!("{} → {}", known(before, 2), known(after, 2));
+    let row = |(before, after): (&MoveResult, &MoveResult)| {
+        [
+            format!("{} deg, {:.0} kg", name(before), before.load_kg),
+            pair(before.time_s, after.time_s),
+            known(before.shortest_s, 2),
+            pair(before.ratio, after.ratio),
+            pair(before.overshoot_deg, after.overshoot_deg),
+            pair(before.final_error_deg, after.final_error_deg),
+        ]
+    };
+    let both = rebuild.before.results.iter().zip(&rebuild.after.results);
     let header = [
         "move",
         "time, s",
@@ -94,5 +87,5 @@ fn moves(rebuild: &Rebuild) -> Markup {
         "overshoot, deg",
         "final error, deg",
     ];
-    page::table(&header, &rows)
+    page::table(&header, both.map(row))
 }

@@ -4,9 +4,9 @@ use hitch_identification::adequacy::localization::{Bin, ErrorProfile};
 use hitch_identification::adequacy::signal::Signal;
 use maud::{Markup, html};
 
-use super::chart::{Band, Chart, Line, Stroke};
+use super::chart::{Band, Chart, Stroke};
 use crate::explanation::Suggested;
-use crate::text::known;
+use crate::text::{joined, known};
 
 /// Residuals of the worst channel over a signal: mean and scatter of every bin.
 pub fn picture(profile: &ErrorProfile) -> Markup {
@@ -22,25 +22,19 @@ pub fn picture(profile: &ErrorProfile) -> Markup {
             "Remaining error of the {}: mean; band: plus and minus the scatter",
             profile.channel.title().to_lowercase()
         ),
-        x_title: axis_title(profile.signal),
-        y_title: "measured - simulated, sigma",
-        bands: vec![Band {
-            name: "mean plus and minus scatter",
-            x: &x,
-            low: &below,
-            high: &above,
-        }],
-        lines: vec![Line {
-            name: "mean",
-            stroke: Stroke::After,
-            x: &x,
-            y: &mean,
-        }],
+        axes: [axis_title(profile.signal), "measured - simulated, sigma"],
+        lines: vec![("mean".to_owned(), Stroke::After, (x.clone(), mean))],
+    };
+    let band = Band {
+        name: "mean plus and minus scatter",
+        x: &x,
+        low: &below,
+        high: &above,
     };
     html! {
         h2 { "Remaining error" }
         p { "It is largest at " strong { (profile.to_string()) } "." }
-        (chart.figure())
+        (chart.figure_with(&[band]))
     }
 }
 
@@ -60,10 +54,9 @@ fn axis_title(signal: Signal) -> &'static str {
 
 /// A suggested term, as text for a model file.
 pub fn suggestion(term: &Suggested) -> Markup {
-    let parameters: Vec<String> = term.parameters.iter().map(ToString::to_string).collect();
     html! {
         h3 { "Suggested term" }
-        p { code { (term.place) " = " (term.formula) } ", " (parameters.join(", ")) }
+        p { code { (term.place) " = " (term.formula) } ", " (joined(&term.parameters, ", ")) }
         p {
             "It reduces the error on held-out runs from "
             strong { (known(term.held_out_before, 2)) } " to "

@@ -2,6 +2,8 @@
 
 use hitch_plant::Channel;
 
+use crate::web::plot::SimulatedChannel;
+
 /// One run as the report draws it.
 #[derive(Debug, Clone)]
 pub struct RunView {
@@ -21,17 +23,6 @@ pub struct RunView {
     pub channels: Vec<ChannelView>,
 }
 
-/// A simulated channel.
-#[derive(Debug, Clone)]
-pub struct Simulated {
-    /// Samples, in the channel's unit.
-    pub samples: Vec<f64>,
-    /// Residuals, sigma; NaN where not compared.
-    pub residuals: Vec<f64>,
-    /// Error, sigma.
-    pub error: f64,
-}
-
 /// One channel of a run.
 #[derive(Debug, Clone)]
 pub struct ChannelView {
@@ -41,8 +32,8 @@ pub struct ChannelView {
     pub noise: f64,
     /// Measured, in the channel's unit.
     pub measured: Vec<f64>,
-    /// Simulated by the initial model.
-    pub before: Simulated,
+    /// Simulated by the initial model; residuals are NaN where not compared.
+    pub before: SimulatedChannel<Vec<f64>>,
     /// Simulated by the final model, if it differs.
-    pub after: Option<Simulated>,
+    pub after: Option<SimulatedChannel<Vec<f64>>>,
 }

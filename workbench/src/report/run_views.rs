@@ -5,8 +5,9 @@ use hitch_identification::data::ready_run::ReadyRun;
 use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Model};
 
-use super::run_view::{ChannelView, RunView, Simulated};
+use super::run_view::{ChannelView, RunView};
 use crate::comparison::Evaluated;
+use crate::web::plot::SimulatedChannel;
 
 /// A model, and its evaluation.
 pub type State<'a> = (&'a Model, &'a Evaluated);
@@ -38,9 +39,9 @@ fn channel_views(run: usize, before: State<'_>, after: Option<State<'_>>) -> Vec
     });
     let simulated = |of: &Option<(&Evaluated, Trace)>, channel: Channel| {
         let (evaluated, trace) = of.as_ref()?;
-        Some(Simulated {
-            samples: trace.channel(channel).to_vec(),
-            residuals: evaluated.residuals(run, channel),
+        Some(SimulatedChannel {
+            simulated: trace.channel(channel).to_vec(),
+            residual: evaluated.residuals(run, channel),
             error: evaluated.error(run, channel),
         })
     };

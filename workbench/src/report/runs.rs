@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::chart::{Chart, Line, Stroke, legend};
+use super::chart::{Chart, Stroke, legend};
 use super::columns::{Column, TIME_S, column, plotted_column};
 use super::data::Data;
 use super::envelope::envelope;
@@ -125,38 +125,33 @@ fn channel_data(view: &ChannelView) -> RunChannel<Column> {
         unit: view.channel.unit(),
         error: last.error,
         measured: samples(&view.measured),
-        simulated: samples(&last.samples),
-        residual: column(&last.residuals, RESIDUAL),
-        first: first.map(|first| samples(&first.samples)),
-        first_residual: first.map(|first| column(&first.residuals, RESIDUAL)),
+        simulated: samples(&last.simulated),
+        residual: column(&last.residual, RESIDUAL),
+        first: first.map(|first| samples(&first.simulated)),
+        first_residual: first.map(|first| column(&first.residual, RESIDUAL)),
         second: None,
     }
 }
 
 fn figure(view: &RunView, channel: &ChannelView) -> Markup {
-    let line = |name, stroke, y| Line {
-        name,
-        stroke,
-        x: &view.time_s,
-        y,
+    let line = |name: &str, stroke, y: &Vec<f64>| {
+        (name.to_owned(), stroke, (view.time_s.clone(), y.clone()))
     };
     let mut lines = vec![line("measured", Stroke::Measured, &channel.measured)];
     let before = &channel.before;
     let mut error = format!("{:.2}", before.error);
     match &channel.after {
-        None => lines.push(line("simulated", Stroke::After, &before.samples)),
+        None => lines.push(line("simulated", Stroke::After, &before.simulated)),
         Some(after) => {
-            lines.push(line("before", Stroke::Before, &before.samples));
-            lines.push(line("after", Stroke::After, &after.samples));
+            lines.push(line("before", Stroke::Before, &before.simulated));
+            lines.push(line("after", Stroke::After, &after.simulated));
             error += &format!(" → {:.2}", after.error);
         }
     }
     let title = format!("{}, {}", channel.channel.title(), channel.channel.unit());
     Chart {
         caption: format!("{}: error {error} sigma", channel.channel.title()),
-        x_title: "time, s",
-        y_title: &title,
-        bands: Vec::new(),
+        axes: ["time, s", &title],
         lines,
     }
     .figure()
@@ -169,7 +164,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     use super::*;
-    use crate::report::run_view::Simulated;
+    use crate::web::plot::SimulatedChannel;
 
     /// A run of 30 s at 50 Hz with four channels, noise, and simulations of two models.
     fn long_run(random: &mut Pcg64, index: usize) -> RunView {
@@ -185,9 +180,9 @@ mod tests {
             curve.into_iter().map(value).collect()
         };
         let channel = |channel| {
-            let mut simulated = |size: f64| Simulated {
-                samples: curve(size),
-                residuals: noisy(vec![0.0; time_s.len()], 1.0),
+            let mut simulated = |size: f64| SimulatedChannel {
+                simulated: curve(size),
+                residual: noisy(vec![0.0; time_s.len()], 1.0),
                 error: 1.0,
             };
             let (before, after) = (simulated(20.0), Some(simulated(22.0)));

@@ -2,11 +2,10 @@
 
 use maud::{Markup, html};
 
-use super::chart::Stroke;
-use super::drawn::{Drawn, Points, drawn};
+use super::chart::{Chart, Line, Points, Stroke};
+use super::drawn::drawn;
 use crate::closed_loop::show_variants::Named;
 use crate::closed_loop::{LoopRun, PressRun, PressTrace};
-use hitch_closed_loop::Sample;
 
 /// Time shown after the last arrival, s.
 const AFTER_S: f64 = 0.5;
@@ -21,28 +20,14 @@ pub fn compared(runs: Named<'_, LoopRun>, index: usize) -> Markup {
     let order = &first.results[index];
     let arrivals = runs.iter().map(|(_, run)| run.results[index].took_s());
     let end_s = arrivals.fold(0.0, f64::max) + AFTER_S;
-    let points = |run: &LoopRun, value: fn(&Sample) -> f64| -> Points {
-        let samples = run.traces[index].samples.iter();
-        let shown = samples.take_while(|sample| sample.time_s <= end_s);
-        shown.map(|sample| (sample.time_s, value(sample))).unzip()
-    };
-    let each = |value: fn(&Sample) -> f64| {
-        let runs = runs.iter().enumerate();
-        runs.map(move |(place, (name, run))| {
-            (
-                (*name).to_owned(),
-                Stroke::SERIES[place % Stroke::SERIES.len()],
-                points(run, value),
-            )
-        })
-    };
+    let each = |value| series(runs, move |run| run.traces[index].points(end_s, value));
     let set_point = (
         "set point".to_owned(),
         Stroke::Measured,
-        points(first, |sample| sample.lever_deg),
+        first.traces[index].points(end_s, |sample| sample.lever_deg),
     );
     let charts = [
-        Drawn {
+        Chart {
             caption: "Rocker angle".to_owned(),
             axes: ["time, s", "angle, deg"],
             lines: [set_point]
@@ -50,7 +35,7 @@ pub fn compared(runs: Named<'_, LoopRun>, index: usize) -> Markup {
                 .chain(each(|sample| sample.angle_deg))
                 .collect(),
         },
-        Drawn {
+        Chart {
             caption: "Coil current".to_owned(),
             axes: ["time, s", "current, A"],
             lines: each(|sample| {
@@ -67,6 +52,18 @@ pub fn compared(runs: Named<'_, LoopRun>, index: usize) -> Markup {
     drawn(&label, &charts)
 }
 
+/// A line for each calibration.
+fn series<Run>(
+    runs: Named<'_, Run>,
+    points: impl Fn(&Run) -> Points,
+) -> impl Iterator<Item = Line> {
+    let styles = Stroke::SERIES.into_iter().cycle();
+    let line = move |((name, run), stroke): (&(&str, &Run), Stroke)| {
+        ((*name).to_owned(), stroke, points(run))
+    };
+    runs.iter().zip(styles).map(line)
+}
+
 /// Speed and angle of the rocker in a press, given by its index, with each calibration.
 pub fn pressed(runs: Named<'_, PressRun>, index: usize) -> Markup {
     let Some((_, first)) = runs.first() else {
@@ -76,16 +73,10 @@ pub fn pressed(runs: Named<'_, PressRun>, index: usize) -> Markup {
     let stops = runs.iter().map(|(_, run)| run.results[index].stop_delay_s);
     let end_s = press.held_s + stops.fold(0.0, f64::max) + AFTER_S;
     let each = |points: fn(&PressTrace) -> Points| {
-        let runs = runs.iter().enumerate();
-        runs.map(move |(place, (name, run))| {
+        series(runs, move |run| {
             let (x, y) = points(&run.traces[index]);
             let shown = x.iter().take_while(|time_s| **time_s <= end_s).count();
-            let points = (x[..shown].to_vec(), y[..shown].to_vec());
-            (
-                (*name).to_owned(),
-                Stroke::SERIES[place % Stroke::SERIES.len()],
-                points,
-            )
+            (x[..shown].to_vec(), y[..shown].to_vec())
         })
     };
     let rate = press.rate_deg_per_s;
@@ -96,12 +87,12 @@ pub fn pressed(runs: Named<'_, PressRun>, index: usize) -> Markup {
     let requested = ("requested".to_owned(), Stroke::Measured, requested);
     let speeds = each(|trace| trace.speeds_deg_per_s(EVERY_MS));
     let charts = [
-        Drawn {
+        Chart {
             caption: "Speed of the rocker, mean over 100 ms".to_owned(),
             axes: ["time, s", "speed, deg/s"],
             lines: [requested].into_iter().chain(speeds).collect(),
         },
-        Drawn {
+        Chart {
             caption: "Rocker angle".to_owned(),
             axes: ["time, s", "angle, deg"],
             lines: each(|trace| {

@@ -2,6 +2,7 @@
 use maud::{Markup, html};
 
 use super::scale::Scale;
+use crate::text::joined;
 
 const WIDTH_PX: f64 = 480.0;
 const ROW_PX: f64 = 44.0;
@@ -45,11 +46,9 @@ fn bar(step: &Step, top: f64, scale: &Scale) -> Markup {
 }
 
 fn spoken(steps: &[Step]) -> String {
-    let told: Vec<String> = steps
-        .iter()
-        .map(|step| format!("{} {:.2}", step.name, step.error))
-        .collect();
-    format!("Error in sigma: {}", told.join(", "))
+    let told = steps.iter();
+    let told = told.map(|step| format!("{} {:.2}", step.name, step.error));
+    format!("Error in sigma: {}", joined(told, ", "))
 }
 
 #[cfg(test)]

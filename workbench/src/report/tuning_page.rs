@@ -36,16 +36,6 @@ pub fn page(shown: &Shown) -> String {
 }
 
 fn sections(shown: &Shown) -> Markup {
-    let figures: Vec<Vec<String>> = shown
-        .figures
-        .iter()
-        .map(|figure| figure.cells().to_vec())
-        .collect();
-    let change = |change: &Change| {
-        let values = [change.before, change.after].map(|value| format!("{value:.3}"));
-        [change.key.clone()].into_iter().chain(values).collect()
-    };
-    let changes: Vec<Vec<String>> = shown.changes.iter().map(change).collect();
     html! {
         (lead(shown))
         @if let Some([before, after]) = shown.moves { (moves(before, after)) }
@@ -53,11 +43,11 @@ fn sections(shown: &Shown) -> Markup {
             (every_press(&[("before", before), ("after", after)]))
         }
         h2 { "Changed values" }
-        (page::table(&["value", "before", "after"], &changes))
+        (page::table(&Change::HEADINGS, shown.changes.iter().map(Change::cells)))
         h2 { "Figures of the search" }
         p { "On the plant and its neighbours, with typical effects where the model has none. "
             @if let Some(said) = figures::sentence(shown.figures) { strong { (said) } } }
-        (page::table(&Figure::HEADINGS, &figures))
+        (page::table(&Figure::HEADINGS, shown.figures.iter().map(Figure::cells)))
     }
 }
 

@@ -11,7 +11,7 @@ use super::same_move::{compared, pressed};
 use crate::closed_loop::show_variants::{self, Named, Sides};
 use crate::closed_loop::variant::Variant;
 use crate::closed_loop::{LoopRun, PressResult, PressRun};
-use crate::text::known;
+use crate::text::{joined, known};
 
 /// What was driven.
 #[derive(Debug, Clone, Copy)]
@@ -74,17 +74,15 @@ pub fn every_press(runs: Named<'_, PressRun>) -> Markup {
 
 fn press_heading(runs: Named<'_, PressRun>, index: usize) -> String {
     let all: Vec<&PressResult> = runs.iter().map(|(_, run)| &run.results[index]).collect();
-    let overshoots: Vec<String> = all
-        .iter()
-        .map(|press| known(100.0 * press.speed_overshoot, 0))
-        .collect();
+    let overshoots = all.iter();
+    let overshoots = overshoots.map(|press| known(100.0 * press.speed_overshoot, 0));
     let conditions = all.first().map_or_else(String::new, |press| {
         format!(
             "{:+.1} deg/s, {:.0} kg, {:.0} °C",
             press.rate_deg_per_s, press.load_kg, press.oil_temperature_c
         )
     });
-    format!("{conditions}: overshoot {} %", overshoots.join(" → "))
+    format!("{conditions}: overshoot {} %", joined(overshoots, " → "))
 }
 
 fn head(setup: &Setup<'_>) -> Markup {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::error::Error;
 
 /// What is wrong, where, and how to correct it.
-#[derive(Debug, Default, Serialize, JsonSchema)]
+#[derive(Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Fault {
     /// The file that is its cause.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -4,38 +4,24 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
-use axum::extract::{DefaultBodyLimit, Query, State};
+use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_input::source_file::SourceFile;
 use hitch_model_file::Template;
-use hitch_plant::{Model, Valve};
+use hitch_plant::Model;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 
 use super::refusal::Refusal;
-use super::request::{Answer, Known, Of, blocking, find, lock};
+use super::request::{Answer, InBody, InQuery, blocking, done, idle, lock};
 use super::sessions::{Sessions, Shared};
 use crate::arguments::known_constants::{ConstantFault, KnownConstants};
-use crate::base_model::data_sheet::{self, QUESTIONS};
+use crate::base_model::data_sheet::{self, ENDS, QUESTIONS, VALVES};
 use crate::error::Error;
 
 /// Maximum size of a model file, bytes.
 pub const LARGEST_MODEL: usize = 1 << 20;
-
-/// The valves of a data sheet, with what each is called.
-const VALVES: [(Valve, &str); 2] = [
-    (Valve::Lift, "Lift valve"),
-    (Valve::Lower, "Lowering valve"),
-];
-
-/// What is asked of a valve, in the order of [`data_sheet::ends`].
-const ENDS: [(&str, &str); 3] = [
-    ("opens", "opening current, A"),
-    ("limit", "current limit, A"),
-    ("full", "flow at the current limit, l/min"),
-];
 
 /// All routes of the first model.
 pub fn routes() -> Router<Arc<Sessions>> {
@@ -51,12 +37,10 @@ pub fn routes() -> Router<Arc<Sessions>> {
 /// A model file for a session.
 #[derive(Debug, Deserialize)]
 pub(super) struct OfFile {
-    pub session: String,
     pub name: String,
 }
 
-async fn file(State(sessions): Known, Query(of): Query<OfFile>, body: Bytes) -> Answer {
-    let session = find(&sessions, &of.session)?;
+async fn file(InQuery(session, of): InQuery<OfFile>, body: Bytes) -> Answer {
     let model = blocking(move || parsed(&of.name, &body)).await??;
     exchange(session, model).await
 }
@@ -70,6 +54,18 @@ pub fn parsed(name: &str, bytes: &[u8]) -> Result<Model, Error> {
     Ok(hitch_model_file::parse(&SourceFile::of(path, bytes)?)?)
 }
 
+/// The model of a template; `what` makes it.
+///
+/// # Errors
+/// If it is no model.
+pub fn made(what: &str, template: &Template, name: &str) -> Result<Model, Error> {
+    let text = template.text().map_err(|error| {
+        let (fault, hint) = (error.what, error.hint);
+        Error::Usage(format!("{what} no machine: {fault}; {hint}"))
+    })?;
+    parsed(name, text.as_bytes())
+}
+
 /// A model of the program.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -80,12 +76,10 @@ enum StartingPoint {
 
 #[derive(Debug, Deserialize)]
 struct Named {
-    session: String,
     name: StartingPoint,
 }
 
-async fn named(State(sessions): Known, Json(wanted): Json<Named>) -> Answer {
-    let session = find(&sessions, &wanted.session)?;
+async fn named(InBody(session, wanted): InBody<Named>) -> Answer {
     let model = match wanted.name {
         StartingPoint::Nominal => hitch_model_file::nominal(),
         StartingPoint::Dynamic => hitch_model_file::dynamic(),
@@ -112,8 +106,7 @@ struct Question {
 }
 
 /// The questions of data sheets, with the values of the first model.
-async fn sheet(State(sessions): Known, Query(of): Query<Of>) -> Answer<Sheet> {
-    let session = find(&sessions, &of.session)?;
+async fn sheet(InQuery(session, _): InQuery) -> Answer<Sheet> {
     let model = lock(&session).subject().model.clone();
     let template = Template::of(&model.name, &model);
     let constant = |(name, question): &(&str, &str)| {
@@ -140,13 +133,11 @@ async fn sheet(State(sessions): Known, Query(of): Query<Of>) -> Answer<Sheet> {
 /// The answers to changed questions, in the order of the questions.
 #[derive(Debug, Deserialize)]
 struct Answers {
-    session: String,
     name: String,
     values: Vec<(String, String)>,
 }
 
-async fn from_sheet(State(sessions): Known, Json(answers): Json<Answers>) -> Answer {
-    let session = find(&sessions, &answers.session)?;
+async fn from_sheet(InBody(session, answers): InBody<Answers>) -> Answer {
     let before = lock(&session).subject().model.clone();
     let model = blocking(move || answers.model(&before)).await??;
     exchange(session, model).await
@@ -175,13 +166,7 @@ impl Answers {
                 template.set_curve(valve, curve);
             }
         }
-        let text = template.text().map_err(|error| {
-            Error::Usage(format!(
-                "the values make no machine: {}; {}",
-                error.what, error.hint
-            ))
-        })?;
-        parsed(name, text.as_bytes())
+        made("the values make", &template, name)
     }
 }
 
@@ -196,7 +181,6 @@ fn end(name: &str) -> Option<(usize, usize)> {
 /// What is known of constants, to look at.
 #[derive(Debug, Deserialize)]
 struct Draft {
-    session: String,
     known: KnownConstants,
 }
 
@@ -208,21 +192,17 @@ pub(super) struct CheckedConstants {
 }
 
 /// What is wrong with what is known of constants of the present model.
-async fn known(State(sessions): Known, Json(draft): Json<Draft>) -> Answer<CheckedConstants> {
-    let session = find(&sessions, &draft.session)?;
+async fn known(InBody(session, draft): InBody<Draft>) -> Answer<CheckedConstants> {
     let model = lock(&session).rebuilt();
     let faults = blocking(move || draft.known.faults(&model)).await?;
     Ok(Json(CheckedConstants { faults }))
 }
 
-async fn back(State(sessions): Known, Json(of): Json<Of>) -> Answer {
-    let session = find(&sessions, &of.session)?;
+async fn back(InBody(session, _): InBody) -> Answer {
     let mut open = lock(&session);
-    if open.job.is_some() {
-        return Err(busy());
-    }
+    idle(&open)?;
     if open.back() {
-        Ok(Json(json!({})))
+        done()
     } else {
         Err(Refusal::conflict("there is no earlier first model"))
     }
@@ -232,20 +212,12 @@ async fn back(State(sessions): Known, Json(of): Json<Of>) -> Answer {
 pub(super) async fn exchange(session: Shared, model: Model) -> Answer {
     let subject = {
         let open = lock(&session);
-        if open.job.is_some() {
-            return Err(busy());
-        }
+        idle(&open)?;
         Arc::clone(open.subject())
     };
     let exchanged = blocking(move || subject.exchanged(model)).await??;
     let mut open = lock(&session);
-    if open.job.is_some() {
-        return Err(busy());
-    }
+    idle(&open)?;
     open.exchange(Arc::new(exchanged));
-    Ok(Json(json!({})))
-}
-
-fn busy() -> Refusal {
-    Refusal::conflict("a computation is running; wait for it or cancel it")
+    done()
 }

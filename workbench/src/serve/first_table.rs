@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
-use axum::extract::{DefaultBodyLimit, Query, State};
+use axum::extract::DefaultBodyLimit;
 use axum::routing::post;
 use axum::{Json, Router};
 use hitch_input::source_file::SourceFile;
@@ -13,8 +13,8 @@ use hitch_plant::{Model, Valve};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::first::{LARGEST_MODEL, exchange, parsed};
-use super::request::{Answer, Known, blocking, find, lock};
+use super::first::{LARGEST_MODEL, exchange, made};
+use super::request::{Answer, InQuery, blocking, lock};
 use super::sessions::Sessions;
 use crate::base_model::{flow_curve, linkage_table};
 use crate::error::Error;
@@ -39,7 +39,6 @@ enum Subject {
 
 #[derive(Debug, Deserialize)]
 struct OfTable {
-    session: String,
     name: String,
     of: Subject,
 }
@@ -51,12 +50,7 @@ pub(super) struct TakenTable {
     said: String,
 }
 
-async fn table(
-    State(sessions): Known,
-    Query(asked): Query<OfTable>,
-    body: Bytes,
-) -> Answer<TakenTable> {
-    let session = find(&sessions, &asked.session)?;
+async fn table(InQuery(session, asked): InQuery<OfTable>, body: Bytes) -> Answer<TakenTable> {
     let before = lock(&session).subject().model.clone();
     let read = move || with_table(&before, asked.of, &asked.name, &body);
     let (model, said) = blocking(read).await??;
@@ -102,13 +96,8 @@ fn with_table(
             )
         }
     };
-    let text = template.text().map_err(|error| {
-        Error::Usage(format!(
-            "{name} makes no machine: {}; {}",
-            error.what, error.hint
-        ))
-    })?;
-    Ok((parsed(&before.name, text.as_bytes())?, said))
+    let model = made(&format!("{name} makes"), &template, &before.name)?;
+    Ok((model, said))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use hitch_identification::data::limit::Limit;
 use tokio::sync::broadcast;
 
 use super::refusal::Refusal;
-use super::request::lock;
+use super::request::{idle, lock};
 use super::session::Job;
 use super::sessions::Shared;
 use super::tasks::{Outcome, Ready, Task};
@@ -74,10 +74,7 @@ impl Reporter {
 /// If a computation is running, or the task does not fit the session.
 pub fn start(session: &Shared, task: Task) -> Result<(), Refusal> {
     let mut open = lock(session);
-    if open.job.is_some() {
-        let what = "a computation is running; wait for it or cancel it";
-        return Err(Refusal::conflict(what));
-    }
+    idle(&open)?;
     let ready = Ready::new(&open, task)?;
     let reporter = Reporter {
         cancelled: Arc::default(),

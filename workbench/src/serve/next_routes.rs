@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::extract::{Query, State};
 use axum::response::Response;
 use axum::routing::get;
 use axum::{Json, Router};
@@ -10,7 +9,7 @@ use hitch_identification::design::Proposal;
 use serde::Deserialize;
 
 use super::refusal::Refusal;
-use super::request::{Answer, Known, blocking, find, lock};
+use super::request::{Answer, InQuery, blocking, lock};
 use super::saving::attached;
 use super::session::Session;
 use super::sessions::Sessions;
@@ -28,7 +27,6 @@ pub fn routes() -> Router<Arc<Sessions>> {
 /// The result of a session that proposes an experiment.
 #[derive(Debug, Deserialize)]
 struct OfResult {
-    session: String,
     of: Proposing,
 }
 
@@ -46,7 +44,7 @@ impl Proposing {
         let next = match self {
             Self::Explanation => session
                 .present_explanation()
-                .map(|explained| &explained.shown.next),
+                .map(|explained| &explained.found.shown.next),
             Self::Ranking => session.present_ranking().map(|ranking| &ranking.shown.next),
         };
         let none =
@@ -56,15 +54,13 @@ impl Proposing {
     }
 }
 
-async fn expected(State(sessions): Known, Query(of): Query<OfResult>) -> Answer<ExpectedRuns> {
-    let session = find(&sessions, &of.session)?;
+async fn expected(InQuery(session, of): InQuery<OfResult>) -> Answer<ExpectedRuns> {
     let proposal = of.of.proposal(&lock(&session))?;
     let view = blocking(move || ExpectedRuns::of(&proposal, &planned(&proposal)));
     Ok(Json(view.await?))
 }
 
-async fn currents(State(sessions): Known, Query(of): Query<OfResult>) -> Result<Response, Refusal> {
-    let session = find(&sessions, &of.session)?;
+async fn currents(InQuery(session, of): InQuery<OfResult>) -> Result<Response, Refusal> {
     let proposal = of.of.proposal(&lock(&session))?;
     let bytes = blocking(move || {
         let files = planned_files(&proposal);

@@ -9,8 +9,10 @@ use hitch_closed_loop::driven::MachineError;
 use serde_json::json;
 
 /// Refusal of a request, with the fault that the page shows.
-pub(super) struct Refusal {
-    status: StatusCode,
+#[derive(Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// Status of the answer.
+    pub status: StatusCode,
     fault: Fault,
 }
 

@@ -5,11 +5,14 @@ use crate::serve::refusal::Refusal;
 use crate::serve::session::Session;
 use crate::serve::sessions::{Sessions, Shared};
 use axum::Json;
-use axum::extract::State;
+use axum::extract::{FromRequest, FromRequestParts, Query, Request, State};
 use axum::http::StatusCode;
+use axum::http::request::Parts;
+use axum::response::{IntoResponse, Response};
 use hitch_plant::Channel;
 use serde::Deserialize;
-use serde_json::Value;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
 use std::sync::{Arc, MutexGuard, PoisonError};
 
 /// The sessions of all tabs.
@@ -18,18 +21,62 @@ pub(super) type Known = State<Arc<Sessions>>;
 /// A view, or the refusal of a request.
 pub(super) type Answer<T = Value> = Result<Json<T>, Refusal>;
 
-/// The session of a request.
+/// The session of a request by its query, and what else the query says.
+pub(super) struct InQuery<T = Nothing>(pub(super) Shared, pub(super) T);
+
+/// The session of a request by its body, and what else the body says.
+pub(super) struct InBody<T = Nothing>(pub(super) Shared, pub(super) T);
+
+/// Nothing but the session.
 #[derive(Debug, Deserialize)]
-pub(super) struct Of {
-    /// Its id.
-    pub(super) session: String,
+pub(super) struct Nothing {}
+
+/// The id of a session, with what is asked of it.
+#[derive(Debug, Deserialize)]
+struct OfSession<T> {
+    session: String,
+    #[serde(flatten)]
+    asked: T,
+}
+
+impl<T: DeserializeOwned> FromRequestParts<Arc<Sessions>> for InQuery<T> {
+    type Rejection = Response;
+
+    async fn from_request_parts(
+        parts: &mut Parts,
+        sessions: &Arc<Sessions>,
+    ) -> Result<Self, Response> {
+        // A text of a query becomes a number only outside a flattened structure.
+        let of = Query::<OfSession<Nothing>>::try_from_uri(&parts.uri);
+        let Query(of) = of.map_err(IntoResponse::into_response)?;
+        let asked = Query::<T>::try_from_uri(&parts.uri);
+        let Query(asked) = asked.map_err(IntoResponse::into_response)?;
+        let session = find(sessions, &of.session).map_err(IntoResponse::into_response)?;
+        Ok(Self(session, asked))
+    }
+}
+
+impl<T: DeserializeOwned> FromRequest<Arc<Sessions>> for InBody<T> {
+    type Rejection = Response;
+
+    async fn from_request(request: Request, sessions: &Arc<Sessions>) -> Result<Self, Response> {
+        let body = Json::<OfSession<T>>::from_request(request, sessions).await;
+        let Json(of) = body.map_err(IntoResponse::into_response)?;
+        let session = find(sessions, &of.session).map_err(IntoResponse::into_response)?;
+        Ok(Self(session, of.asked))
+    }
+}
+
+/// A step of a session.
+#[derive(Debug, Deserialize)]
+pub(super) struct OfStep {
+    /// Its index.
+    pub(super) at: usize,
 }
 
 /// A cell of an error map.
 #[derive(Debug, Deserialize)]
 pub struct OfCell {
-    /// The session.
-    pub session: String,
     /// Grouping of the map's rows.
     pub by: Grouping,
     /// Row.
@@ -51,7 +98,7 @@ impl OfCell {
 }
 
 /// The session of a tab.
-pub(super) fn find(sessions: &Sessions, id: &str) -> Result<Shared, Refusal> {
+fn find(sessions: &Sessions, id: &str) -> Result<Shared, Refusal> {
     let unknown = || Refusal::of(StatusCode::GONE, "the session has expired; reload the page");
     sessions.get(id).ok_or_else(unknown)
 }
@@ -59,6 +106,21 @@ pub(super) fn find(sessions: &Sessions, id: &str) -> Result<Shared, Refusal> {
 /// A session to look at or to change; a computation that failed leaves it as it was.
 pub(super) fn lock(session: &Shared) -> MutexGuard<'_, Session> {
     session.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Refuses a request that a running computation forbids.
+pub(super) fn idle(session: &Session) -> Result<(), Refusal> {
+    match session.job {
+        None => Ok(()),
+        Some(_) => Err(Refusal::conflict(
+            "a computation is running; wait for it or cancel it",
+        )),
+    }
+}
+
+/// The page has nothing more to learn.
+pub(super) fn done() -> Answer {
+    Ok(Json(Value::Object(Map::new())))
 }
 
 /// Computes off the threads that answer requests.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axum::extract::{Path, Query, State};
+use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
@@ -19,7 +19,7 @@ use super::fault::Fault;
 use super::own_term::{FormulaElements, TermForm};
 use super::parameters::moved;
 use super::session::Step;
-use super::sessions::Sessions;
+use super::sessions::{Sessions, Shared};
 use super::source::Subject;
 use super::tasks::Task;
 use super::views::run::RunView;
@@ -30,7 +30,9 @@ use crate::comparison::{WorstStretch, worst_in_part};
 use crate::error::Error;
 use crate::report::map_view::Located;
 use crate::serve::refusal::Refusal;
-use crate::serve::request::{Answer, Known, Of, OfCell, blocking, find, lock};
+use crate::serve::request::{
+    Answer, InBody, InQuery, Known, OfCell, OfStep, blocking, done, idle, lock,
+};
 use crate::web::plot::{Samples, SimulatedChannel};
 
 /// All routes, protected by the token.
@@ -81,27 +83,23 @@ async fn begin(State(sessions): Known) -> Answer<Begun> {
     Ok(Json(begun.await??))
 }
 
-async fn state(State(sessions): Known, Query(of): Query<Of>) -> Answer<SessionState> {
-    let session = find(&sessions, &of.session)?;
+async fn state(InQuery(session, _): InQuery) -> Answer<SessionState> {
     let view = blocking(move || SessionState::of(&lock(&session)));
     Ok(Json(view.await?))
 }
 
 #[derive(Debug, Deserialize)]
 struct OfRun {
-    session: String,
     run: usize,
 }
 
-async fn run(State(sessions): Known, Query(of): Query<OfRun>) -> Answer<RunView> {
-    let session = find(&sessions, &of.session)?;
+async fn run(InQuery(session, of): InQuery<OfRun>) -> Answer<RunView> {
     let view = blocking(move || RunView::of(&lock(&session), of.run));
     let no_run = || Refusal::of(StatusCode::NOT_FOUND, "the run is not in the campaign");
     Ok(Json(view.await?.ok_or_else(no_run)?))
 }
 
-async fn worst(State(sessions): Known, Query(of): Query<OfCell>) -> Answer<Located<WorstStretch>> {
-    let session = find(&sessions, &of.session)?;
+async fn worst(InQuery(session, of): InQuery<OfCell>) -> Answer<Located<WorstStretch>> {
     let evaluated = Arc::clone(&lock(&session).present().evaluated);
     let worst = move || worst_in_part(&evaluated, of.by, &of.part, of.channel()?);
     let found = blocking(worst).await?.ok_or_else(OfCell::no_data)?;
@@ -111,16 +109,11 @@ async fn worst(State(sessions): Known, Query(of): Query<OfCell>) -> Answer<Locat
 /// A candidate of the ranking, and the run to show its signature in.
 #[derive(Debug, Deserialize)]
 struct OfCandidate {
-    session: String,
     run: usize,
     effect: String,
 }
 
-async fn signature(
-    State(sessions): Known,
-    Query(of): Query<OfCandidate>,
-) -> Answer<RunParts<Signature>> {
-    let session = find(&sessions, &of.session)?;
+async fn signature(InQuery(session, of): InQuery<OfCandidate>) -> Answer<RunParts<Signature>> {
     let (subject, step, ranking) = {
         let session = lock(&session);
         (
@@ -147,7 +140,6 @@ struct TrialOfRun {
 /// A parameter of an effect set by hand.
 #[derive(Debug, Deserialize)]
 struct Trial {
-    session: String,
     effect: usize,
     parameter: usize,
     value: f64,
@@ -155,9 +147,8 @@ struct Trial {
 
 impl Trial {
     /// The model of the trial: the campaign, the present step, and its estimate with the parameter set.
-    fn applied(&self, sessions: &Sessions) -> Result<(Arc<Subject>, Step, Estimate), Refusal> {
-        let session = find(sessions, &self.session)?;
-        let session = lock(&session);
+    fn applied(&self, session: &Shared) -> Result<(Arc<Subject>, Step, Estimate), Refusal> {
+        let session = lock(session);
         let step = session.present().clone();
         let estimate = &step.evaluated.fit.estimate;
         let estimate = moved(estimate, self.effect, self.parameter, self.value);
@@ -171,17 +162,16 @@ impl Trial {
 }
 
 async fn preview(
-    State(sessions): Known,
-    Json(TrialOfRun { run, trial }): Json<TrialOfRun>,
+    InBody(session, TrialOfRun { run, trial }): InBody<TrialOfRun>,
 ) -> Answer<RunParts<SimulatedChannel<Samples>>> {
-    let (subject, step, estimate) = trial.applied(&sessions)?;
+    let (subject, step, estimate) = trial.applied(&session)?;
     let view = blocking(move || RunParts::preview(&subject, &step, &estimate, run));
     let none = || Refusal::conflict("the run does not exist");
     Ok(Json(view.await?.ok_or_else(none)?))
 }
 
-async fn preview_all(State(sessions): Known, Json(trial): Json<Trial>) -> Answer<TriedRuns> {
-    let (subject, step, estimate) = trial.applied(&sessions)?;
+async fn preview_all(InBody(session, trial): InBody<Trial>) -> Answer<TriedRuns> {
+    let (subject, step, estimate) = trial.applied(&session)?;
     let view = blocking(move || TriedRuns::of(&subject, &step, estimate));
     Ok(Json(view.await?))
 }
@@ -209,51 +199,30 @@ async fn check(Json(draft): Json<Draft>) -> Answer<Checked> {
     Ok(Json(Checked { fault }))
 }
 
-#[derive(Debug, Deserialize)]
-struct Start {
-    session: String,
-    #[serde(flatten)]
-    task: Task,
-}
-
-async fn start(State(sessions): Known, Json(wanted): Json<Start>) -> Answer {
-    let session = find(&sessions, &wanted.session)?;
-    jobs::start(&session, wanted.task)?;
+async fn start(InBody(session, task): InBody<Task>) -> Answer {
+    jobs::start(&session, task)?;
     let title = lock(&session).job.as_ref().map(|job| job.title.clone());
     Ok(Json(json!({ "title": title })))
 }
 
-async fn cancel(State(sessions): Known, Json(of): Json<Of>) -> Answer {
-    lock(&find(&sessions, &of.session)?).cancel();
-    Ok(Json(json!({})))
+async fn cancel(InBody(session, _): InBody) -> Answer {
+    lock(&session).cancel();
+    done()
 }
 
-#[derive(Debug, Deserialize)]
-struct Go {
-    session: String,
-    at: usize,
-}
-
-async fn go(State(sessions): Known, Json(to): Json<Go>) -> Answer {
-    let session = find(&sessions, &to.session)?;
+async fn go(InBody(session, to): InBody<OfStep>) -> Answer {
     let mut open = lock(&session);
-    if open.job.is_some() {
-        return Err(Refusal::conflict(
-            "a computation is running; wait for it or cancel it",
-        ));
-    }
+    idle(&open)?;
     if open.go(to.at) {
-        Ok(Json(json!({})))
+        done()
     } else {
         Err(Refusal::conflict("the step no longer exists"))
     }
 }
 
 async fn events(
-    State(sessions): Known,
-    Query(of): Query<Of>,
+    InQuery(session, _): InQuery,
 ) -> Result<Sse<impl Stream<Item = Result<Event, axum::Error>>>, Refusal> {
-    let session = find(&sessions, &of.session)?;
     let messages = BroadcastStream::new(lock(&session).messages.subscribe());
     // A tab that is too far behind has missed messages; the state that it asks for at the end has all of it.
     let known = messages.filter_map(Result::ok);

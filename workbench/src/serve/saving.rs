@@ -3,19 +3,19 @@
 use std::sync::Arc;
 
 use axum::Router;
-use axum::extract::{Query, State};
+
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use hitch_controller_host::calibration_file;
 
 use super::refusal::Refusal;
-use super::request::{Known, Of, blocking, find, lock};
+use super::request::{InQuery, blocking, lock};
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
 use crate::comparison::Comparison;
 use crate::error::Error;
-use crate::explanation::{self, Found};
+use crate::explanation::Found;
 use crate::output::archive::zipped;
 use crate::report::{comparison_page, explanation_page};
 use hitch_closed_loop::driven::calibration;
@@ -31,15 +31,13 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/save/all", get(all))
 }
 
-async fn model(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
-    let session = find(&sessions, &of.session)?;
+async fn model(InQuery(session, _): InQuery) -> Result<Response, Refusal> {
     let mut session = lock(&session);
     session.saved = Some(Arc::clone(&session.present().evaluated));
     Ok(attached(TOML, "model.toml", model_file(&session)))
 }
 
-async fn tuned(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
-    let session = find(&sessions, &of.session)?;
+async fn tuned(InQuery(session, _): InQuery) -> Result<Response, Refusal> {
     let tuned = lock(&session).present_tuned().cloned();
     let none = || Refusal::conflict("no calibration is tuned for the present model; tune it first");
     Ok(attached(
@@ -49,14 +47,12 @@ async fn tuned(State(sessions): Known, Query(of): Query<Of>) -> Result<Response,
     ))
 }
 
-async fn report(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
-    let session = find(&sessions, &of.session)?;
+async fn report(InQuery(session, _): InQuery) -> Result<Response, Refusal> {
     let page = blocking(move || page(&session)).await?;
     Ok(attached("text/html; charset=utf-8", "report.html", page))
 }
 
-async fn all(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
-    let session = find(&sessions, &of.session)?;
+async fn all(InQuery(session, _): InQuery) -> Result<Response, Refusal> {
     let bytes = blocking(move || archived(&session)).await??;
     Ok(attached("application/zip", "hitch.zip", bytes))
 }
@@ -104,13 +100,8 @@ fn page(session: &Shared) -> String {
         let comparison = Comparison::of(&evaluated, &first.model);
         return comparison_page::page(&comparison, &evaluated, &first.model);
     };
-    let found = explanation::Explained {
-        explanation: explained.explanation.clone(),
-        suggestion: explained.suggestion.clone(),
-        shown: explained.shown.clone(),
-    };
-    let experiment = first.experiment().clone();
-    let model = explained.model.clone();
+    let (experiment, model) = (first.experiment().clone(), explained.model.clone());
+    let found = explained.found.clone();
     explanation_page::page(&Found::finished(experiment, model, found))
 }
 

@@ -3,16 +3,15 @@
 use std::sync::Arc;
 
 use axum::body::Bytes;
-use axum::extract::{DefaultBodyLimit, Query, State};
+use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post};
 use axum::{Json, Router};
-use serde::Deserialize;
 use serde_json::json;
 
 use super::first::{LARGEST_MODEL, OfFile, parsed};
 use super::jobs;
 use super::refusal::Refusal;
-use super::request::{Answer, Known, Of, OfCell, blocking, find, lock};
+use super::request::{Answer, InBody, InQuery, OfCell, OfStep, blocking, done, lock};
 use super::session::Session;
 use super::sessions::Sessions;
 use super::tasks::Task;
@@ -31,24 +30,16 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/second/largest", get(largest))
 }
 
-#[derive(Debug, Deserialize)]
-struct OfStep {
-    session: String,
-    at: usize,
-}
-
-async fn step(State(sessions): Known, Json(of): Json<OfStep>) -> Answer {
-    let session = find(&sessions, &of.session)?;
+async fn step(InBody(session, of): InBody<OfStep>) -> Answer {
     let mut open = lock(&session);
     let second = of_step(&open, of.at);
     let gone = || Refusal::conflict("the step no longer exists");
     open.second = Some(Arc::new(second.ok_or_else(gone)?));
-    Ok(Json(json!({})))
+    done()
 }
 
 /// Starts the evaluation of a model file.
-async fn file(State(sessions): Known, Query(of): Query<OfFile>, body: Bytes) -> Answer {
-    let session = find(&sessions, &of.session)?;
+async fn file(InQuery(session, of): InQuery<OfFile>, body: Bytes) -> Answer {
     let model = blocking(move || parsed(&of.name, &body).map(|model| (of.name, model)));
     let (title, model) = model.await??;
     let model = Box::new(model);
@@ -57,25 +48,20 @@ async fn file(State(sessions): Known, Query(of): Query<OfFile>, body: Bytes) -> 
     Ok(Json(json!({ "title": title })))
 }
 
-async fn swap(State(sessions): Known, Json(of): Json<Of>) -> Answer {
-    let session = find(&sessions, &of.session)?;
+async fn swap(InBody(session, _): InBody) -> Answer {
     let mut open = lock(&session);
     let second = Arc::make_mut(open.second.as_mut().ok_or_else(none)?);
     second.is_after = !second.is_after;
-    Ok(Json(json!({})))
+    done()
 }
 
-async fn close(State(sessions): Known, Json(of): Json<Of>) -> Answer {
-    lock(&find(&sessions, &of.session)?).second = None;
-    Ok(Json(json!({})))
+async fn close(InBody(session, _): InBody) -> Answer {
+    lock(&session).second = None;
+    done()
 }
 
 /// The stretch that contributes most to the change of a cell.
-async fn largest(
-    State(sessions): Known,
-    Query(of): Query<OfCell>,
-) -> Answer<Located<ChangedStretch>> {
-    let session = find(&sessions, &of.session)?;
+async fn largest(InQuery(session, of): InQuery<OfCell>) -> Answer<Located<ChangedStretch>> {
     let (second, present) = {
         let session = lock(&session);
         let second = session.second.clone().ok_or_else(none)?;

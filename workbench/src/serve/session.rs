@@ -6,9 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use hitch_closed_loop::driven::Models;
 use hitch_effects::TermEffect;
 use hitch_identification::estimation::fit::Fit;
-use hitch_identification::explanation::{diagnosis, explain};
+use hitch_identification::explanation::diagnosis;
 use hitch_identification::selection::candidate::Candidate;
-use hitch_identification::suggestion::Suggestion;
 use hitch_plant::{Effect, Model, full_name};
 use tokio::sync::broadcast;
 
@@ -72,11 +71,7 @@ pub struct Explained {
     /// The model that it starts from: the present one, with constants in the middle of their ranges.
     pub model: Model,
     /// The result.
-    pub explanation: explain::Explanation,
-    /// A term for the remaining error.
-    pub suggestion: Option<Suggestion>,
-    /// The result in its display form.
-    pub shown: explanation::Explanation,
+    pub found: explanation::Explained,
 }
 
 /// A first model that was exchanged for another one, with the steps from it.
@@ -202,16 +197,14 @@ impl Session {
 
     /// The explanation, if it starts from the present model.
     pub fn present_explanation(&self) -> Option<&Arc<Explained>> {
-        let present = &self.present().evaluated;
         let explained = self.explained.as_ref();
-        explained.filter(|explained| Arc::ptr_eq(&explained.of, present))
+        explained.filter(|explained| self.is_present(&explained.of))
     }
 
     /// The tuned calibration, if it is for the present model.
     pub fn present_tuned(&self) -> Option<&Arc<TunedFor>> {
-        let present = &self.present().evaluated;
         let tuned = self.tuned.as_ref();
-        tuned.filter(|tuned| Arc::ptr_eq(&tuned.of, present))
+        tuned.filter(|tuned| self.is_present(&tuned.of))
     }
 
     /// Drops what belongs to another first model.
@@ -252,9 +245,13 @@ impl Session {
 
     /// The ranking, if it belongs to the present model.
     pub fn present_ranking(&self) -> Option<&Arc<Ranking>> {
-        let present = &self.present().evaluated;
         let ranking = self.ranking.as_ref();
-        ranking.filter(|ranking| Arc::ptr_eq(&ranking.of, present))
+        ranking.filter(|ranking| self.is_present(&ranking.of))
+    }
+
+    /// Whether it is the present model.
+    pub fn is_present(&self, evaluated: &Arc<Evaluated>) -> bool {
+        Arc::ptr_eq(evaluated, &self.present().evaluated)
     }
 
     /// Adds a step after the present one; discards undone steps.

@@ -251,7 +251,7 @@ impl Ready {
             Task::Second { title, model } => What::Second(title, model),
             Task::Adopt { steps } => What::Adopt(present_explanation(session)?, steps),
             Task::Suggested => {
-                let suggestion = present_explanation(session)?.suggestion.clone();
+                let suggestion = present_explanation(session)?.found.suggestion.clone();
                 let none = || Refusal::conflict("the explanation suggests no term");
                 let suggestion = suggestion.ok_or_else(none)?;
                 present.define(suggestion.term);

@@ -19,6 +19,13 @@ pub fn known(value: f64, decimals: usize) -> String {
     }
 }
 
+/// Items as text, with a separator.
+#[must_use]
+pub fn joined(items: impl IntoIterator<Item: ToString>, between: &str) -> String {
+    let items = items.into_iter().map(|item| item.to_string());
+    items.collect::<Vec<_>>().join(between)
+}
+
 /// A path as one word of a shell, for a command to copy.
 #[must_use]
 pub fn shell_word(path: &Path) -> String {

@@ -37,6 +37,16 @@ impl Table {
         }
     }
 
+    /// A table with a header and rows.
+    pub fn of<'a, R: IntoIterator<Item = String>>(
+        header: impl IntoIterator<Item = &'a str>,
+        rows: impl IntoIterator<Item = R>,
+    ) -> Self {
+        let mut table = Self::new(header);
+        rows.into_iter().for_each(|row| table.row(row));
+        table
+    }
+
     /// Adds a row; its first cell is its name.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(Row::new(cells.into_iter().collect()));

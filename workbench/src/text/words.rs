@@ -6,6 +6,8 @@ use hitch_plant::{Dynamics, Model};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::joined;
+
 /// A term and what it means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Word {
@@ -83,7 +85,7 @@ pub fn sentences(words: &[Word]) -> String {
         let term: String = first.into_iter().chain(letters).collect();
         format!("{term}: {}.", word.means)
     };
-    words.iter().map(sentence).collect::<Vec<_>>().join(" ")
+    joined(words.iter().map(sentence), " ")
 }
 
 /// A probability in words.

@@ -13,3 +13,15 @@ pub struct Change {
     /// Value after, in the unit of the calibration file.
     pub after: f64,
 }
+
+impl Change {
+    /// Column headings of [`Change::cells`].
+    pub const HEADINGS: [&'static str; 3] = ["value", "before", "after"];
+
+    /// Its row in a table.
+    #[must_use]
+    pub fn cells(&self) -> [String; 3] {
+        let [before, after] = [self.before, self.after].map(|value| format!("{value:.3}"));
+        [self.key.clone(), before, after]
+    }
+}

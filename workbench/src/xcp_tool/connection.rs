@@ -46,16 +46,7 @@ fn interrupted(error: ToolError) -> Error {
 /// A fault that the user can correct is an input error; others are failures.
 pub fn tool_error(error: ToolError) -> Error {
     match error {
-        ToolError::Bus(_)
-        | ToolError::Silent
-        | ToolError::Locked
-        | ToolError::NotAtRest
-        | ToolError::Loosens { .. }
-        | ToolError::WrongKey
-        | ToolError::NoChallenge
-        | ToolError::OutOfRange(_)
-        | ToolError::NoHitch
-        | ToolError::OtherEcu(_) => Error::Usage(error.to_string()),
-        other => Error::Failed(other.to_string()),
+        ToolError::Refused(_) | ToolError::NotStored => Error::Failed(error.to_string()),
+        other => Error::Usage(other.to_string()),
     }
 }

@@ -32,6 +32,14 @@ pub struct LineError {
     pub hint: String,
 }
 
+impl LineError {
+    /// A fault at a character position.
+    pub fn new(column: usize, what: impl Into<String>, hint: impl Into<String>) -> Self {
+        let (what, hint) = (what.into(), hint.into());
+        Self { column, what, hint }
+    }
+}
+
 /// The header, and the time of the last line.
 #[derive(Debug, Clone)]
 pub struct Columns {
@@ -53,19 +61,11 @@ impl Columns {
         for (column, cell) in cells(header.strip_prefix('\u{feff}').unwrap_or(header)) {
             let Some(index) = KNOWN.iter().position(|name| *name == cell) else {
                 let what = unknown_name("column", cell, &KNOWN);
-                return Err(LineError {
-                    column,
-                    what,
-                    hint: offer_names(cell, &KNOWN),
-                });
+                return Err(LineError::new(column, what, offer_names(cell, &KNOWN)));
             };
             if order.contains(&index) {
                 let what = format!("column {cell} is duplicated");
-                return Err(LineError {
-                    column,
-                    what,
-                    hint: "delete one of the two".to_owned(),
-                });
+                return Err(LineError::new(column, what, "delete one of the two"));
             }
             order.push(index);
         }
@@ -75,11 +75,7 @@ impl Columns {
         match missing {
             Some(name) => {
                 let what = format!("column {name} is missing");
-                Err(LineError {
-                    column: 1,
-                    what,
-                    hint: Self::HINT.to_owned(),
-                })
+                Err(LineError::new(1, what, Self::HINT))
             }
             None => Ok(Self {
                 order,
@@ -105,11 +101,8 @@ impl Columns {
         for (column, cell) in cells(line) {
             let Some(&index) = order.next() else {
                 let what = format!("the line has more than {} cells", self.order.len());
-                return Err(LineError {
-                    column,
-                    what,
-                    hint: "give one cell for each column of the header".to_owned(),
-                });
+                let hint = "give one cell for each column of the header";
+                return Err(LineError::new(column, what, hint));
             };
             if index == 0 {
                 time_column = column;
@@ -118,31 +111,22 @@ impl Columns {
         }
         if let Some(&index) = order.next() {
             let what = format!("the line has no cell for {}", KNOWN[index]);
-            let hint = "give one cell for each column of the header; it may be empty".to_owned();
-            return Err(LineError {
-                column: line.trim_end().chars().count() + 1,
-                what,
-                hint,
-            });
+            let hint = "give one cell for each column of the header; it may be empty";
+            let column = line.trim_end().chars().count() + 1;
+            return Err(LineError::new(column, what, hint));
         }
         self.check_time(time_column, values[0])?;
         Ok(inputs_of(&values))
     }
 
     fn check_time(&mut self, column: usize, time_s: Option<f64>) -> Result<(), LineError> {
-        let hint = "give one line for each millisecond".to_owned();
-        let Some(time_s) = time_s else {
-            return Err(LineError {
-                column,
-                what: "time_s is empty".to_owned(),
-                hint,
-            });
-        };
+        let fault = |what| LineError::new(column, what, "give one line for each millisecond");
+        let time_s = time_s.ok_or_else(|| fault("time_s is empty".to_owned()))?;
         if let Some(last_s) = self.time_s.replace(time_s) {
             let step_s = time_s - last_s;
             if !STEP_S.contains(&step_s) {
                 let what = format!("time_s advances by {:.6} s instead of 0.001 s", step_s);
-                return Err(LineError { column, what, hint });
+                return Err(fault(what));
             }
         }
         Ok(())
@@ -178,11 +162,8 @@ fn number(column: usize, cell: &str) -> Result<Option<f64>, LineError> {
         Ok(value) if value.is_finite() => Ok(Some(value)),
         _ => {
             let what = format!("{} is not a finite number", quote(cell));
-            Err(LineError {
-                column,
-                what,
-                hint: "write a number like 90.25, or leave the cell empty".to_owned(),
-            })
+            let hint = "write a number like 90.25, or leave the cell empty";
+            Err(LineError::new(column, what, hint))
         }
     }
 }

@@ -40,14 +40,12 @@ the terms of a file.
 /// Places, signals and functions. (Writing to a string cannot fail.)
 pub fn text() -> String {
     let mut text = HEAD.to_owned();
-    let mut places = Table::new(["place", "unit", "action of a term"]);
-    for place in Place::all() {
-        places.row([place.id(), place.unit(), place.meaning()].map(str::to_owned));
-    }
-    let mut signals = Table::new(["signal", "unit", "description"]);
-    for signal in &SIGNALS {
-        signals.row([signal.name, signal.unit, signal.meaning].map(str::to_owned));
-    }
+    let places = Place::all();
+    let places = places.map(|place| [place.id(), place.unit(), place.meaning()].map(str::to_owned));
+    let places = Table::of(["place", "unit", "action of a term"], places);
+    let signals = SIGNALS.iter();
+    let signals = signals.map(|one| [one.name, one.unit, one.meaning].map(str::to_owned));
+    let signals = Table::of(["signal", "unit", "description"], signals);
     let _ = write!(text, "\n{places}\n{signals}\n  function\n");
     for (_, _, meaning) in FUNCTIONS {
         let _ = writeln!(text, "  {meaning}");

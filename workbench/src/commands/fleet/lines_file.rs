@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -36,13 +36,10 @@ impl LinesFile {
             };
             return Ok((lines, HashMap::new()));
         }
-        let fault = |source: io::Error| Error::Write {
-            path: path.to_path_buf(),
-            source,
-        };
+        let fault = Error::writing(path);
         let is_file = path.is_file();
         let text = if is_file {
-            fs::read_to_string(path).map_err(fault)?
+            fs::read_to_string(path).map_err(&fault)?
         } else {
             String::new()
         };
@@ -58,7 +55,7 @@ impl LinesFile {
             .create(true)
             .append(true)
             .open(path)
-            .map_err(fault)?;
+            .map_err(&fault)?;
         if is_file {
             // An interrupted call may have left the start of a line.
             let whole = text.rfind('\n').map_or(0, |at| at + 1);
@@ -84,10 +81,7 @@ impl LinesFile {
         let mut file = file.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         file.write_all(line.as_bytes())
             .and_then(|()| file.flush())
-            .map_err(|source| Error::Write {
-                path: self.path.clone(),
-                source,
-            })
+            .map_err(Error::writing(&self.path))
     }
 }
 

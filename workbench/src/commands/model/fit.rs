@@ -67,14 +67,13 @@ pub fn run(args: &Args) -> Result<(), Error> {
         args.out.display()
     );
     let shown = ShownBaseFit::new(&experiment, &model, &fit, next);
-    if let Some(path) = &args.report {
-        let page = fit_page::page(&fit_page::Shown {
+    output::write_if(args.report.as_ref(), || {
+        fit_page::page(&fit_page::Shown {
             experiment: &experiment,
             declared: &model,
             fit: &fit,
             told: &shown,
-        });
-        output::write_file(path, page.as_bytes())?;
-    }
+        })
+    })?;
     outputs.tell(&args.json, &shown, || shown.to_string())
 }

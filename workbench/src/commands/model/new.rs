@@ -8,7 +8,7 @@ use hitch_input::source_file::SourceFile;
 use hitch_model_file::Template;
 use hitch_plant::{Valve, ValveCurve};
 
-use crate::base_model::data_sheet::{self, QUESTIONS};
+use crate::base_model::data_sheet::{self, ENDS, QUESTIONS, VALVES};
 use crate::base_model::{flow_curve, linkage_table};
 use crate::error::Error;
 use crate::output;
@@ -123,10 +123,8 @@ fn ask_all(template: &mut Template, args: &Args) -> Result<(), Error> {
         };
         ask(question, &default, |answer| template.set(name, answer))?;
     }
-    for (valve, path, title) in [
-        (Valve::Lift, &args.lift_curve, "Lift valve"),
-        (Valve::Lower, &args.lower_curve, "Lowering valve"),
-    ] {
+    let curves = [&args.lift_curve, &args.lower_curve];
+    for ((valve, title), path) in VALVES.into_iter().zip(curves) {
         if path.is_none() {
             let curve = asked_curve(template.curve(valve), title)?;
             template.set_curve(valve, curve);
@@ -137,21 +135,18 @@ fn ask_all(template: &mut Template, args: &Args) -> Result<(), Error> {
 
 /// A flow curve with the shape of the default, between the opening current and the current limit.
 fn asked_curve(default: &ValveCurve, title: &str) -> Result<ValveCurve, Error> {
-    let [opens, last, full] = data_sheet::ends(default);
-    let asked = |what: &str, default: f64| {
-        let mut found = default;
-        let question = format!("{title}, {what}");
-        ask(&question, &format!("{default:.3}"), |answer| {
-            found = data_sheet::positive(answer)?;
-            Ok(())
-        })?;
-        Ok::<f64, Error>(found)
-    };
-    let opens_now = asked("opening current, A", opens)?;
-    let last_now = asked("current limit, A", last)?;
-    let full_now = asked("flow at the current limit, l/min", full)?;
-    data_sheet::curve(default, [opens_now, last_now, full_now])
-        .map_err(|why| Error::Usage(format!("{title}: {why}")))
+    let mut ends = data_sheet::ends(default);
+    for (end, (_, what)) in ends.iter_mut().zip(ENDS) {
+        ask(
+            &format!("{title}, {what}"),
+            &format!("{end:.3}"),
+            |answer| {
+                *end = data_sheet::positive(answer)?;
+                Ok(())
+            },
+        )?;
+    }
+    data_sheet::curve(default, ends).map_err(|why| Error::Usage(format!("{title}: {why}")))
 }
 
 /// Asks until the answer is valid; an empty one keeps the default.

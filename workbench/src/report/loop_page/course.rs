@@ -1,10 +1,11 @@
 //! Traces of angle, currents and pressures: of all moves if they are few, else of the worst.
 use maud::{Markup, html};
 
+use super::worst::{FIGURES, Figure};
 use crate::closed_loop::show::name;
 use crate::closed_loop::{LoopRun, MoveResult, MoveTrace};
-use crate::report::chart::Stroke;
-use crate::report::drawn::{Drawn, Points, drawn};
+use crate::report::chart::{Chart, Line, Stroke};
+use crate::report::drawn::drawn;
 use crate::text::known;
 use hitch_closed_loop::Sample;
 
@@ -32,14 +33,8 @@ pub fn shown(results: &[MoveResult]) -> Vec<usize> {
     if results.len() <= MOST {
         return (0..results.len()).collect();
     }
-    let figures: [fn(&MoveResult) -> f64; 4] = [
-        |result| result.ratio,
-        |result| result.overshoot_deg,
-        |result| result.final_error_deg,
-        |result| result.pressure_swing_ratio,
-    ];
     let mut chosen = Vec::new();
-    for figure in figures {
+    for Figure { of: figure, .. } in FIGURES {
         let mut order: Vec<usize> = (0..results.len()).collect();
         order.sort_by(|&a, &b| figure(&results[b]).total_cmp(&figure(&results[a])));
         chosen.extend(order.into_iter().take(WORST));
@@ -55,13 +50,10 @@ pub fn shown(results: &[MoveResult]) -> Vec<usize> {
 
 fn course(result: &MoveResult, trace: &MoveTrace) -> Markup {
     let end_s = result.took_s() + AFTER_S;
-    let points = |value: fn(&Sample) -> f64| -> Points {
-        let samples = trace.samples.iter();
-        let shown = samples.take_while(|sample| sample.time_s <= end_s);
-        shown.map(|sample| (sample.time_s, value(sample))).unzip()
+    let line = |name: &str, stroke, value: fn(&Sample) -> f64| {
+        (name.to_owned(), stroke, trace.points(end_s, value))
     };
-    let line = |name: &str, stroke, value| (name.to_owned(), stroke, points(value));
-    let chart = |caption: &str, y_title, lines: [(String, Stroke, Points); 2]| Drawn {
+    let chart = |caption: &str, y_title, lines: [Line; 2]| Chart {
         caption: caption.to_owned(),
         axes: ["time, s", y_title],
         lines: lines.into(),

@@ -3,9 +3,8 @@ use maud::{Markup, html};
 
 use super::occurring;
 use crate::closed_loop::{LoopRun, MoveResult, MoveTrace};
-use crate::report::chart::Stroke;
-use crate::report::drawn::{Drawn, Points, drawn};
-use hitch_closed_loop::Sample;
+use crate::report::chart::{Chart, Stroke};
+use crate::report::drawn::drawn;
 
 /// Time shown after the slowest arrival, s.
 const AFTER_S: f64 = 0.4;
@@ -59,7 +58,7 @@ fn overlaid(run: &LoopRun, over: &Over) -> Markup {
         .map(|value| format!("{value:.0} {}", over.unit))
         .collect();
     let ways = occurring(&run.results, |result| (result.from_deg, result.to_deg));
-    let charts: Vec<Drawn> = ways
+    let charts: Vec<Chart<'static>> = ways
         .into_iter()
         .map(|way| chart(&lines_of(run, over, fixed, way), &names))
         .collect();
@@ -87,27 +86,22 @@ fn lines_of<'a>(run: &'a LoopRun, over: &Over, fixed: f64, way: (f64, f64)) -> V
         .collect()
 }
 
-fn chart(driven: &[Driven], names: &[String]) -> Drawn {
+fn chart(driven: &[Driven], names: &[String]) -> Chart<'static> {
     let times = driven.iter().map(|(result, _)| result.took_s());
     let end_s = times.fold(0.0, f64::max) + AFTER_S;
-    let points = |trace: &MoveTrace, value: fn(&Sample) -> f64| -> Points {
-        let samples = trace.samples.iter();
-        let shown = samples.take_while(|sample| sample.time_s <= end_s);
-        shown.map(|sample| (sample.time_s, value(sample))).unzip()
-    };
     let set_point = driven.first().map(|(_, trace)| {
-        let points = points(trace, |sample| sample.lever_deg);
+        let points = trace.points(end_s, |sample| sample.lever_deg);
         ("set point".to_owned(), Stroke::Measured, points)
     });
     let hitches = driven.iter().zip(STROKES).zip(names);
     let hitches = hitches.map(|(((_, trace), stroke), name)| {
-        let points = points(trace, |sample| sample.angle_deg);
+        let points = trace.points(end_s, |sample| sample.angle_deg);
         (name.clone(), stroke, points)
     });
     let caption = driven.first().map_or_else(String::new, |(result, _)| {
         format!("{:.1} to {:.1} degrees", result.from_deg, result.to_deg)
     });
-    Drawn {
+    Chart {
         caption,
         axes: ["time, s", "angle, deg"],
         lines: set_point.into_iter().chain(hitches).collect(),

@@ -7,16 +7,17 @@ use crate::report::page::folded;
 use crate::web::heat_table::{HeatTable, Shade};
 
 /// A figure of a move with its colour scale.
-struct Figure {
+pub(super) struct Figure {
     name: &'static str,
-    of: fn(&MoveResult) -> f64,
+    pub(super) of: fn(&MoveResult) -> f64,
     /// White: ideal value.
     best: f64,
     /// Yellow: limit for the motion. Orange: as far above it.
     bar: f64,
 }
 
-const FIGURES: [Figure; 4] = [
+/// The figures by which a move may be the worst.
+pub(super) const FIGURES: [Figure; 4] = [
     Figure {
         name: "Time ratio: time over the shortest time with edges of 100 ms",
         of: |result| result.ratio,

@@ -3,9 +3,11 @@
 use std::sync::mpsc::{Receiver, Sender, SyncSender, TrySendError, channel, sync_channel};
 use std::time::Instant;
 
+use axum::http::StatusCode;
 use hitch_closed_loop::driven::{Machine, Orders, Pair};
 
 use super::answer::LoopAnswer;
+use crate::serve::refusal::Refusal;
 
 /// An advance of both hitches.
 struct Advance {
@@ -18,15 +20,6 @@ struct Advance {
 #[derive(Debug)]
 pub struct Bench {
     orders: SyncSender<Advance>,
-}
-
-/// Reason why an advance has no result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NoAnswer {
-    /// An earlier advance has not ended.
-    Busy,
-    /// The simulation has failed.
-    Failed,
 }
 
 impl Bench {
@@ -46,7 +39,7 @@ impl Bench {
     ///
     /// # Errors
     /// If the previous one has not ended, or the simulation has failed.
-    pub fn advance(&self, orders: Orders, steps: u32) -> Result<Receiver<LoopAnswer>, NoAnswer> {
+    pub fn advance(&self, orders: Orders, steps: u32) -> Result<Receiver<LoopAnswer>, Refusal> {
         let (answer, pending) = channel();
         let advance = Advance {
             orders,
@@ -55,10 +48,21 @@ impl Bench {
         };
         match self.orders.try_send(advance) {
             Ok(()) => Ok(pending),
-            Err(TrySendError::Full(_)) => Err(NoAnswer::Busy),
-            Err(TrySendError::Disconnected(_)) => Err(NoAnswer::Failed),
+            Err(TrySendError::Full(_)) => Err(Refusal::of(
+                StatusCode::TOO_MANY_REQUESTS,
+                "an earlier step of the closed loop has not ended",
+            )),
+            Err(TrySendError::Disconnected(_)) => Err(failed()),
         }
     }
+}
+
+/// The simulation has failed.
+pub fn failed() -> Refusal {
+    Refusal::of(
+        StatusCode::INTERNAL_SERVER_ERROR,
+        "the simulation has failed; start the closed loop again",
+    )
 }
 
 /// Advances both hitches until the sender is dropped.

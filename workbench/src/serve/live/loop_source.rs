@@ -8,7 +8,7 @@ use hitch_closed_loop::driven::{Machine, Orders};
 use hitch_quantities::ValidCalibration;
 
 use super::answer::LoopAnswer;
-use super::bench::{Bench, NoAnswer};
+use super::bench::{Bench, failed};
 use super::bus::{BusMonitor, Place};
 use super::emulated::{EcuSocket, NoEcu, RunningEcu};
 use crate::comparison::Evaluated;
@@ -138,9 +138,7 @@ impl TabLoop {
     /// If the previous one has not ended, or the simulation or the ECU has ended.
     pub(in crate::serve) fn advance(&self, orders: Orders, steps: u32) -> Result<Pending, Refusal> {
         match &self.kind {
-            Kind::Host(bench) => Ok(Pending::Computed(
-                bench.advance(orders, steps).map_err(refused)?,
-            )),
+            Kind::Host(bench) => bench.advance(orders, steps).map(Pending::Computed),
             Kind::Ecu(ecu) => match ecu.exchange(orders) {
                 Ok(view) => Ok(Pending::Ready(view)),
                 Err(reason) => Err(Refusal::of(StatusCode::GONE, &reason)),
@@ -158,20 +156,7 @@ impl Pending {
     pub(in crate::serve) fn wait(self) -> Result<LoopAnswer, Refusal> {
         match self {
             Self::Ready(view) => Ok(view),
-            Self::Computed(answer) => answer.recv().map_err(|_| refused(NoAnswer::Failed)),
+            Self::Computed(answer) => answer.recv().map_err(|_| failed()),
         }
-    }
-}
-
-fn refused(reason: NoAnswer) -> Refusal {
-    match reason {
-        NoAnswer::Busy => Refusal::of(
-            StatusCode::TOO_MANY_REQUESTS,
-            "an earlier step of the closed loop has not ended",
-        ),
-        NoAnswer::Failed => Refusal::of(
-            StatusCode::INTERNAL_SERVER_ERROR,
-            "the simulation has failed; start the closed loop again",
-        ),
     }
 }

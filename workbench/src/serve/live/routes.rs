@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::response::Response;
 use axum::routing::{get, post};
 use axum::{Json, Router};
@@ -15,7 +15,7 @@ use super::answer::LoopAnswer;
 use super::loop_source::LoopSource;
 use crate::error::Error;
 use crate::serve::refusal::Refusal;
-use crate::serve::request::{Answer, Known, Of, blocking, find, lock};
+use crate::serve::request::{Answer, InBody, InQuery, Known, blocking, done, lock};
 use crate::serve::saving::{TOML, attached};
 
 /// All routes of the closed loop.
@@ -32,13 +32,14 @@ pub fn routes() -> Router<Arc<crate::serve::sessions::Sessions>> {
 /// Conditions at the start.
 #[derive(Debug, Deserialize)]
 struct Open {
-    session: String,
     orders: Orders,
 }
 
 /// What the page draws before it starts anything.
-async fn describe(State(sessions): Known, Json(wanted): Json<Open>) -> Answer<Described> {
-    let session = find(&sessions, &wanted.session)?;
+async fn describe(
+    State(sessions): Known,
+    InBody(session, wanted): InBody<Open>,
+) -> Answer<Described> {
     let orders = checked(wanted.orders)?;
     let models = lock(&session).models();
     let shown = blocking(move || {
@@ -49,8 +50,7 @@ async fn describe(State(sessions): Known, Json(wanted): Json<Open>) -> Answer<De
 }
 
 /// Starts a closed loop at rest with the lever at its position; replaces that of before.
-async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer<Described> {
-    let session = find(&sessions, &wanted.session)?;
+async fn open(State(sessions): Known, InBody(session, wanted): InBody<Open>) -> Answer<Described> {
     let orders = checked(wanted.orders)?;
     let (of, models, before) = {
         let mut session = lock(&session);
@@ -77,16 +77,14 @@ async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer<Descri
 }
 
 /// Ends the closed loop.
-async fn close(State(sessions): Known, Json(of): Json<Of>) -> Answer {
-    let session = find(&sessions, &of.session)?;
+async fn close(InBody(session, _): InBody) -> Answer {
     let before = lock(&session).tab_loop.take();
     blocking(move || drop(before)).await?;
-    Ok(Json(json!({})))
+    done()
 }
 
 /// Writes the calibration of the present model to the ECU on the bus.
-async fn write(State(sessions): Known, Json(of): Json<Of>) -> Answer {
-    let session = find(&sessions, &of.session)?;
+async fn write(State(sessions): Known, InBody(session, _): InBody) -> Answer {
     let models = lock(&session).models();
     let written = blocking(move || {
         let rebuilt = models.rebuilt()?;
@@ -107,22 +105,19 @@ fn view(machine: &Machine, angle_deg: f64, source: &LoopSource) -> Result<Descri
 /// An advance of both hitches.
 #[derive(Debug, Deserialize)]
 struct Advance {
-    session: String,
     orders: Orders,
     milliseconds: u32,
 }
 
-async fn step(State(sessions): Known, Json(wanted): Json<Advance>) -> Answer<LoopAnswer> {
-    let session = find(&sessions, &wanted.session)?;
+async fn step(InBody(session, wanted): InBody<Advance>) -> Answer<LoopAnswer> {
     let orders = checked(wanted.orders)?;
     if let Some(what) = wrong_advance(wanted.milliseconds) {
         return Err(Refusal::wrong(what));
     }
     let pending = {
         let session = lock(&session);
-        let present = &session.present().evaluated;
         let tab_loop = session.tab_loop.as_ref();
-        let tab_loop = tab_loop.filter(|known| Arc::ptr_eq(&known.of, present));
+        let tab_loop = tab_loop.filter(|known| session.is_present(&known.of));
         let stale = || Refusal::conflict("the model has changed; start the closed loop again");
         let tab_loop = tab_loop.ok_or_else(stale)?;
         tab_loop.advance(orders, wanted.milliseconds)?
@@ -140,8 +135,7 @@ fn checked(orders: Orders) -> Result<Orders, Refusal> {
 }
 
 /// The calibration of the present model, as a file.
-async fn calibration(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
-    let session = find(&sessions, &of.session)?;
+async fn calibration(InQuery(session, _): InQuery) -> Result<Response, Refusal> {
     let models = lock(&session).models();
     let rebuilt = blocking(move || models.rebuilt()).await??;
     Ok(attached(

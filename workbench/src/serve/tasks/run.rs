@@ -58,14 +58,10 @@ impl Ready {
             }
             What::Set(estimate, title) => {
                 reporter.progress("evaluating all runs", None, None);
-                let weights = Weights::new(Problem::new(self.experiment(), self.model()), estimate);
+                let weights = Weights::new(self.problem(), estimate);
                 let estimate = estimate.clone();
-                let loaded = fit_loads(
-                    Problem::new(self.experiment(), self.model()),
-                    &weights,
-                    estimate,
-                );
-                let fit = evaluate(Problem::new(self.experiment(), self.model()), loaded);
+                let loaded = fit_loads(self.problem(), &weights, estimate);
+                let fit = evaluate(self.problem(), loaded);
                 Outcome::Steps(vec![self.step(title.clone(), fit, None)])
             }
             What::Fix(estimate, title) => {
@@ -130,21 +126,13 @@ impl Ready {
     fn rank(&self, reporter: &Reporter) -> Ranking {
         reporter.progress("fitting the clocks and loads", None, None);
         let start = self.present.evaluated.fit.estimate.clone();
-        let base = refine(
-            Problem::new(self.experiment(), self.model()),
-            start.with_adopted(),
-        );
+        let base = refine(self.problem(), start.with_adopted());
         reporter.progress("simulating every effect at a few sizes", None, None);
         let done = AtomicUsize::new(0);
-        let diagnosis = diagnose_each(
-            Problem::new(self.experiment(), self.model()),
-            base.clone(),
-            &|_| {},
-            &|candidate, all| {
-                let share = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64;
-                reporter.candidate(ShownCandidate::tried(&base, candidate), share);
-            },
-        );
+        let diagnosis = diagnose_each(self.problem(), base.clone(), &|_| {}, &|candidate, all| {
+            let share = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64;
+            reporter.candidate(ShownCandidate::tried(&base, candidate), share);
+        });
         reporter.progress("comparing the best candidates", None, None);
         let shown = explanation::Diagnosis::new(self.experiment(), self.model(), &diagnosis);
         Ranking {
@@ -167,20 +155,13 @@ impl Ready {
             tolerances: Some(&start.tolerances),
             ..Options::default()
         };
-        let explained = explanation::Explained::new(self.experiment(), model, options, &|what| {
+        let found = explanation::Explained::new(self.experiment(), model, options, &|what| {
             reporter.progress(&format!("trying {what}"), None, None);
         });
-        let explanation::Explained {
-            explanation,
-            suggestion,
-            shown,
-        } = explained;
         Explained {
-            suggestion,
             of: Arc::clone(&self.present.evaluated),
             model: (**model).clone(),
-            explanation,
-            shown,
+            found,
         }
     }
 
@@ -196,9 +177,8 @@ impl Ready {
         if let Some(candidate) = ranked {
             return candidate.fit.estimate.clone();
         }
-        let (experiment, model) = (self.experiment(), self.model());
         let base = &self.present.evaluated.fit;
-        let tried = try_effects(Problem::new(experiment, model), base, &[effect], &|_| {
+        let tried = try_effects(self.problem(), base, &[effect], &|_| {
             reporter.progress("estimating its size", None, None);
         });
         let tried = tried.into_iter().next();
@@ -214,38 +194,32 @@ impl Ready {
 
     /// Fits all effects from an initial estimate; reports the error after each round.
     fn fitted(&self, title: String, mut estimate: Estimate, reporter: &Reporter) -> Step {
-        let (experiment, model) = (self.experiment(), self.model());
         estimate.adopted.clear();
         keep_fixed(&self.present.evaluated.fit.estimate, &mut estimate);
         let whole = (ROUNDS + 3) as f64;
         let told = |round: usize, text: &str, fit: &Fit| {
             reporter.progress(text, Some(round as f64 / whole), Some(fit.error()));
         };
-        let mut fit = evaluate(Problem::new(experiment, model), estimate);
+        let mut fit = evaluate(self.problem(), estimate);
         told(0, "start", &fit);
         for round in 1..=ROUNDS {
-            let descent = short_fit(
-                Problem::new(experiment, model),
-                &fit.weights,
-                fit.estimate,
-                false,
-            );
-            fit = evaluate(Problem::new(experiment, model), descent.estimate);
+            let descent = short_fit(self.problem(), &fit.weights, fit.estimate, false);
+            fit = evaluate(self.problem(), descent.estimate);
             told(round, &format!("fitting, round {round}"), &fit);
             if descent.last_reduction <= WORTHWHILE * descent.cost {
                 break;
             }
         }
-        let fit = refine(Problem::new(experiment, model), fit.estimate);
+        let fit = refine(self.problem(), fit.estimate);
         told(ROUNDS + 1, "evaluating held-out runs", &fit);
-        let error = held_out(Problem::new(experiment, model), &fit).error;
+        let error = held_out(self.problem(), &fit).error;
         reporter.progress("done", Some(1.0), None);
         self.step(title, fit, Some(error))
     }
 
     /// The accepted steps of an explanation: step by step if all are accepted, else fitted together.
     fn adopted(&self, explained: &Explained, accepted: &[usize], reporter: &Reporter) -> Vec<Step> {
-        let found = &explained.explanation;
+        let found = &explained.found.explanation;
         let fixed = &self.present.evaluated.fit.estimate.fixed;
         if fixed.is_empty() && (0..found.steps.len()).all(|step| accepted.contains(&step)) {
             let constants = found.corrected.iter().map(|corrected| {
@@ -290,5 +264,9 @@ impl Ready {
 
     fn model(&self) -> &Model {
         &self.model
+    }
+
+    fn problem(&self) -> Problem<'_> {
+        Problem::new(self.experiment(), self.model())
     }
 }

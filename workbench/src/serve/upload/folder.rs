@@ -6,12 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use axum::http::StatusCode;
 use tempfile::TempDir;
 
 use super::limits::{LONGEST_NAME, MOST_BYTES, MOST_FILES};
 use super::proposal::Proposal;
 use crate::error::Error;
 use crate::serve::guard::random_token;
+use crate::serve::refusal::Refusal;
 
 /// The folder of all uploads of a server; it exists only if there was an upload.
 #[derive(Debug, Default)]
@@ -42,15 +44,6 @@ pub(super) struct Received {
     /// Name of each file, and whether it is complete.
     files: Vec<(String, bool)>,
     bytes: u64,
-}
-
-/// The reason why a file is not accepted.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Unacceptable {
-    /// The name is not that of a file, or is taken.
-    Name(String),
-    /// There are too many files, or too many bytes.
-    TooMuch(String),
 }
 
 impl Folders {
@@ -147,7 +140,7 @@ impl Received {
     ///
     /// # Errors
     /// If the name is taken, or there are too many files.
-    pub fn reserve(&mut self, name: &str) -> Result<(), Unacceptable> {
+    pub fn reserve(&mut self, name: &str) -> Result<(), Refusal> {
         if self.files.len() >= MOST_FILES {
             return Err(too_much());
         }
@@ -155,7 +148,7 @@ impl Received {
         let folded = name.to_lowercase();
         let mut known = self.files.iter();
         if known.any(|(other, _)| other.to_lowercase() == folded) {
-            return Err(Unacceptable::Name(format!(
+            return Err(Refusal::wrong(format!(
                 "{name:?}: there is another file with this name; rename one of them"
             )));
         }
@@ -167,7 +160,7 @@ impl Received {
     ///
     /// # Errors
     /// If they exceed the limit; they are not counted then.
-    pub fn grow(&mut self, bytes: u64) -> Result<(), Unacceptable> {
+    pub fn grow(&mut self, bytes: u64) -> Result<(), Refusal> {
         let sum = self.bytes.saturating_add(bytes);
         if sum > MOST_BYTES {
             return Err(too_much());
@@ -191,27 +184,28 @@ impl Received {
 }
 
 /// The fault of more files or bytes than a page opens.
-pub fn too_much() -> Unacceptable {
-    Unacceptable::TooMuch(format!(
+pub fn too_much() -> Refusal {
+    let what = format!(
         "the page opens at most {MOST_FILES} files of together {} MiB; use hitch import for more",
         MOST_BYTES >> 20
-    ))
+    );
+    Refusal::of(StatusCode::PAYLOAD_TOO_LARGE, &what)
 }
 
 /// The name of a file without folders.
 ///
 /// # Errors
 /// If it is not the name of a file.
-pub fn plain_name(given: &str) -> Result<&str, Unacceptable> {
+pub fn plain_name(given: &str) -> Result<&str, Refusal> {
     let name = given.rsplit(['/', '\\']).next().unwrap_or_default();
     let is_odd = |letter: char| letter.is_control() || letter == ':';
     if name.trim_matches(['.', ' ']).is_empty() || name.chars().any(is_odd) {
-        return Err(Unacceptable::Name(format!(
+        return Err(Refusal::wrong(format!(
             "{given:?} is not the name of a file; rename it"
         )));
     }
     if name.len() > LONGEST_NAME {
-        return Err(Unacceptable::Name(format!(
+        return Err(Refusal::wrong(format!(
             "the name of a file has {} bytes; at most {LONGEST_NAME} are possible",
             name.len()
         )));
@@ -251,10 +245,8 @@ mod tests {
         }
         assert_eq!(received.reserve("more.csv"), Err(too_much()));
         received.forget("0.csv", 10);
-        assert!(matches!(
-            received.reserve("1.CSV"),
-            Err(Unacceptable::Name(_))
-        ));
+        let taken = received.reserve("1.CSV").unwrap_err();
+        assert_eq!(taken.status, StatusCode::UNPROCESSABLE_ENTITY);
         assert!(received.grow(10).is_ok() && received.reserve("more.csv").is_ok());
     }
 

@@ -2,33 +2,16 @@
 
 use std::fmt::Display;
 use std::fs::{self, File};
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::time::Duration;
 
+use axum::http::StatusCode;
 use tokio::task::block_in_place;
 use tokio::time::timeout;
 use tokio_stream::{Stream, StreamExt};
 
-use super::folder::{Unacceptable, Upload};
-
-/// The reason why a file was not received.
-#[derive(Debug, PartialEq, Eq)]
-pub enum Lost {
-    /// It is not accepted.
-    Unacceptable(Unacceptable),
-    /// It took too long.
-    Late,
-    /// The connection failed.
-    Broken(String),
-    /// It cannot be stored.
-    Disk(String),
-}
-
-impl From<Unacceptable> for Lost {
-    fn from(reason: Unacceptable) -> Self {
-        Self::Unacceptable(reason)
-    }
-}
+use super::folder::Upload;
+use crate::serve::refusal::Refusal;
 
 /// Stores a stream of bytes as a file of an upload, within a time. What was received is deleted if this fails, or is dropped.
 ///
@@ -39,18 +22,34 @@ pub async fn receive<B: AsRef<[u8]>, E: Display>(
     name: &str,
     mut stream: impl Stream<Item = Result<B, E>> + Unpin,
     within: Duration,
-) -> Result<(), Lost> {
+) -> Result<(), Refusal> {
     let mut incoming = Incoming::new(upload, name)?;
     let all = async {
         while let Some(bytes) = stream.next().await {
-            let bytes = bytes.map_err(|error| Lost::Broken(error.to_string()))?;
+            let bytes = bytes.map_err(broken)?;
             block_in_place(|| incoming.write(bytes.as_ref()))?;
         }
-        Ok::<(), Lost>(())
+        Ok::<(), Refusal>(())
     };
-    timeout(within, all).await.map_err(|_| Lost::Late)??;
+    timeout(within, all).await.map_err(|_| late(within))??;
     incoming.is_complete = true;
     Ok(())
+}
+
+fn broken(why: impl Display) -> Refusal {
+    let what = format!("the file was not received: {why}");
+    Refusal::of(StatusCode::BAD_REQUEST, &what)
+}
+
+fn late(within: Duration) -> Refusal {
+    let seconds = within.as_secs();
+    let what = format!("the file was not received within {seconds} s; try it again");
+    Refusal::of(StatusCode::REQUEST_TIMEOUT, &what)
+}
+
+fn unstored(why: io::Error) -> Refusal {
+    let what = format!("the file cannot be stored: {why}; make room on the disk");
+    Refusal::of(StatusCode::INSUFFICIENT_STORAGE, &what)
 }
 
 /// Deletes its file when dropped, unless it is complete.
@@ -63,11 +62,11 @@ struct Incoming<'u> {
 }
 
 impl<'u> Incoming<'u> {
-    fn new(upload: &'u Upload, name: &'u str) -> Result<Self, Lost> {
+    fn new(upload: &'u Upload, name: &'u str) -> Result<Self, Refusal> {
         upload.received().reserve(name)?;
         let file = File::create_new(upload.path().join(name)).map_err(|error| {
             upload.received().forget(name, 0);
-            Lost::Disk(error.to_string())
+            unstored(error)
         })?;
         Ok(Self {
             upload,
@@ -78,11 +77,11 @@ impl<'u> Incoming<'u> {
         })
     }
 
-    fn write(&mut self, bytes: &[u8]) -> Result<(), Lost> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
         self.upload.received().grow(bytes.len() as u64)?;
         self.bytes += bytes.len() as u64;
         let written = self.file.write_all(bytes);
-        written.map_err(|error| Lost::Disk(error.to_string()))
+        written.map_err(unstored)
     }
 }
 
@@ -106,7 +105,7 @@ mod tests {
 
     type Chunk = Result<&'static str, String>;
 
-    fn received(chunks: Vec<Chunk>, waits: bool) -> (Folders, Upload, Result<(), Lost>) {
+    fn received(chunks: Vec<Chunk>, waits: bool) -> (Folders, Upload, Result<(), Refusal>) {
         let folders = Folders::default();
         let upload = folders.begin().unwrap();
         let runtime = tokio::runtime::Runtime::new().unwrap();
@@ -131,12 +130,8 @@ mod tests {
         assert_eq!(fs::read_to_string(&files[0]).unwrap(), "123");
 
         for (chunks, waits, expected) in [
-            (vec![Ok("12")], true, Lost::Late),
-            (
-                vec![Ok("12"), Err("cut".to_owned())],
-                false,
-                Lost::Broken("cut".to_owned()),
-            ),
+            (vec![Ok("12")], true, late(Duration::from_millis(50))),
+            (vec![Ok("12"), Err("cut".to_owned())], false, broken("cut")),
         ] {
             let (_folders, upload, outcome) = received(chunks, waits);
             assert_eq!(outcome, Err(expected));

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::{Arc, PoisonError};
 
 use axum::body::Body;
-use axum::extract::{DefaultBodyLimit, Query, State};
+use axum::extract::{DefaultBodyLimit, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::routing::post;
 use axum::{Json, Router};
@@ -15,14 +15,14 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::assignment::Assignment;
-use super::folder::{Unacceptable, Upload, plain_name, too_much};
-use super::incoming::{Lost, receive};
+use super::folder::{Upload, plain_name, too_much};
+use super::incoming::receive;
 use super::limits::{LARGEST_ASSIGNMENT, LIFETIME, LONGEST, MOST_BYTES, MOST_FILES};
 use super::proposal::Proposal;
 use super::surveyed::Surveyed;
 use crate::error::Error;
 use crate::serve::refusal::Refusal;
-use crate::serve::request::{Answer, Known, Of, blocking, find, lock};
+use crate::serve::request::{Answer, InBody, InQuery, Known, blocking, done, idle, lock};
 use crate::serve::sessions::{Sessions, Shared};
 use crate::serve::source::{Origin, Subject};
 
@@ -40,19 +40,17 @@ pub fn routes() -> Router<Arc<Sessions>> {
 /// Number and size of the files to come.
 #[derive(Debug, Deserialize)]
 struct Begin {
-    session: String,
     files: usize,
     bytes: u64,
 }
 
 /// Starts an upload; deletes the files of an earlier one.
-async fn begin(State(sessions): Known, Json(wanted): Json<Begin>) -> Answer {
-    let session = find(&sessions, &wanted.session)?;
+async fn begin(State(sessions): Known, InBody(session, wanted): InBody<Begin>) -> Answer {
     if wanted.files == 0 {
         return Err(Refusal::wrong("there is no file".to_owned()));
     }
     if wanted.files > MOST_FILES || wanted.bytes > MOST_BYTES {
-        return Err(too_much().into());
+        return Err(too_much());
     }
     let upload = Arc::new(sessions.folders.begin()?);
     let id = upload.id.clone();
@@ -70,38 +68,30 @@ async fn begin(State(sessions): Known, Json(wanted): Json<Begin>) -> Answer {
 /// An upload of a tab.
 #[derive(Debug, Deserialize)]
 struct OfUpload {
-    session: String,
     upload: String,
 }
 
 /// A file of an upload.
 #[derive(Debug, Deserialize)]
 struct OfFile {
-    session: String,
     upload: String,
     name: String,
 }
 
-async fn file(
-    State(sessions): Known,
-    Query(of): Query<OfFile>,
-    headers: HeaderMap,
-    body: Body,
-) -> Answer {
-    let upload = upload(&find(&sessions, &of.session)?, &of.upload)?;
+async fn file(InQuery(session, of): InQuery<OfFile>, headers: HeaderMap, body: Body) -> Answer {
+    let upload = upload(&session, &of.upload)?;
     let name = plain_name(&of.name)?;
     let length = headers.get(header::CONTENT_LENGTH);
     let length: Option<u64> = length.and_then(|length| length.to_str().ok()?.parse().ok());
     if length.is_some_and(|length| length > MOST_BYTES) {
-        return Err(too_much().into());
+        return Err(too_much());
     }
     receive(&upload, name, body.into_data_stream(), LONGEST).await?;
     Ok(Json(json!({ "file": name })))
 }
 
 /// The proposed assignment.
-async fn survey(State(sessions): Known, Json(of): Json<OfUpload>) -> Answer<Surveyed> {
-    let session = find(&sessions, &of.session)?;
+async fn survey(InBody(session, of): InBody<OfUpload>) -> Answer<Surveyed> {
     let upload = upload(&session, &of.upload)?;
     let subject = Arc::clone(lock(&session).subject());
     let view = blocking(move || {
@@ -121,15 +111,14 @@ async fn survey(State(sessions): Known, Json(of): Json<OfUpload>) -> Answer<Surv
 }
 
 /// Deletes the files.
-async fn discard(State(sessions): Known, Json(of): Json<Of>) -> Answer {
-    lock(&find(&sessions, &of.session)?).upload = None;
-    Ok(Json(json!({})))
+async fn discard(InBody(session, _): InBody) -> Answer {
+    lock(&session).upload = None;
+    done()
 }
 
 /// The edited assignment of an upload.
 #[derive(Debug, Deserialize)]
 struct Open {
-    session: String,
     upload: String,
     #[serde(flatten)]
     assignment: Assignment,
@@ -165,17 +154,13 @@ impl Origin for Opened {
 }
 
 /// Opens the campaign in the session. Answers which logs are joined, split or cut.
-async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
-    let session = find(&sessions, &wanted.session)?;
+async fn open(InBody(session, wanted): InBody<Open>) -> Answer {
     let upload = upload(&session, &wanted.upload)?;
-    let (model, is_busy) = {
+    let model = {
         let session = lock(&session);
-        (session.subject().model.clone(), session.job.is_some())
+        idle(&session)?;
+        session.subject().model.clone()
     };
-    let busy = || Refusal::conflict("a computation is running; wait for it or cancel it");
-    if is_busy {
-        return Err(busy());
-    }
     let from = Arc::clone(&upload);
     let subject = blocking(move || {
         let proposal = from.proposal.lock().unwrap_or_else(PoisonError::into_inner);
@@ -192,9 +177,7 @@ async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let (subject, notes) = subject.await??;
     let subject = Arc::new(subject);
     let mut session = lock(&session);
-    if session.job.is_some() {
-        return Err(busy());
-    }
+    idle(&session)?;
     session.open(subject);
     session.upload.take_if(|known| known.id == upload.id);
     Ok(Json(json!({ "notes": notes })))
@@ -229,35 +212,5 @@ fn named(upload: &Upload, error: Error) -> Error {
         }),
         Error::Usage(text) => Error::Usage(within(&text)),
         other => other,
-    }
-}
-
-impl From<Unacceptable> for Refusal {
-    fn from(reason: Unacceptable) -> Self {
-        match reason {
-            Unacceptable::Name(what) => Self::wrong(what),
-            Unacceptable::TooMuch(what) => Self::of(StatusCode::PAYLOAD_TOO_LARGE, &what),
-        }
-    }
-}
-
-impl From<Lost> for Refusal {
-    fn from(lost: Lost) -> Self {
-        match lost {
-            Lost::Unacceptable(reason) => reason.into(),
-            Lost::Late => {
-                let seconds = LONGEST.as_secs();
-                let what = format!("the file was not received within {seconds} s; try it again");
-                Self::of(StatusCode::REQUEST_TIMEOUT, &what)
-            }
-            Lost::Broken(why) => {
-                let what = format!("the file was not received: {why}");
-                Self::of(StatusCode::BAD_REQUEST, &what)
-            }
-            Lost::Disk(why) => {
-                let what = format!("the file cannot be stored: {why}; make room on the disk");
-                Self::of(StatusCode::INSUFFICIENT_STORAGE, &what)
-            }
-        }
     }
 }

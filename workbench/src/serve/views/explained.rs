@@ -89,8 +89,8 @@ pub struct CurveChange {
 impl ShownExplanation {
     /// A finished explanation.
     pub fn of(explained: &Explained) -> Self {
-        let shown = &explained.shown;
-        let steps = explained.explanation.steps.iter().zip(&shown.steps);
+        let shown = &explained.found.shown;
+        let steps = explained.found.explanation.steps.iter().zip(&shown.steps);
         let constants = shown.corrected_constants.as_ref();
         Self {
             error_before: shown.head.error_before,

@@ -1,7 +1,5 @@
 //! The way from data to a saved calibration: its steps, each with its state.
 
-use std::sync::Arc;
-
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -77,7 +75,7 @@ fn saving(session: &Session) -> (bool, String) {
     let Some(saved) = &session.saved else {
         return (false, "not saved".to_owned());
     };
-    let is_saved = Arc::ptr_eq(saved, &session.present().evaluated);
+    let is_saved = session.is_present(saved);
     let state = if is_saved { "saved" } else { "changed since" };
     (is_saved, state.to_owned())
 }
