@@ -1,21 +1,19 @@
 //! A lab campaign simulated with the project's own plant, so that the parameters of its effects have the meaning of the
 //! catalogue. Currents vary between samples, loads have weighing errors, instruments have noise and finite resolution.
 
-use hitch_campaign::{Bench, Campaign, Noise, Run};
+use hitch_campaign::{Bench, Campaign, Run};
 use hitch_plant::simulation::simulate;
 use hitch_plant::{Channel, Currents, Model};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
-use crate::second_rig::instruments::{CHANNEL_SIGMA, Instruments};
+use crate::second_rig::campaign_writer::LOAD_SIGMA;
+use crate::second_rig::instruments::{Instruments, stated_noise};
 use crate::second_rig::manoeuvres::{Manoeuvre, Plan, Stand, runs};
 use crate::second_rig::test_stand::SAMPLE_RATE_HZ;
 
 /// Steps of the truth from one sample to the next.
 const FINER: usize = 5;
-
-/// Relative error of a weighed load.
-const LOAD_SIGMA: f64 = 0.005;
 
 /// The second rig's plan of a lab campaign, driven on `rig`.
 #[must_use]
@@ -36,18 +34,12 @@ pub fn campaign_of(rig: &Model, count: usize, rate_hz: f64, random: &mut Pcg64) 
 
 fn logged(rig: &Model, manoeuvres: &[Manoeuvre], rate_hz: f64, random: &mut Pcg64) -> Campaign {
     let instruments = Instruments::good();
-    let noise = Some(instruments.current_sigma_a);
     Campaign {
         name: "simulated".to_owned(),
         description: String::new(),
         sample_rate_hz: rate_hz,
         synchronous: false,
-        noise: Noise {
-            lift_current_a: noise,
-            lower_current_a: noise,
-            channels: CHANNEL_SIGMA.map(Some),
-            oil_temperature_c: None,
-        },
+        noise: stated_noise(instruments.current_sigma_a),
         runs: manoeuvres
             .iter()
             .map(|manoeuvre| log(rig, manoeuvre, rate_hz, &instruments, random))

@@ -6,6 +6,7 @@ use super::data_sheet::{
     AREA_M2, DEAD_WEIGHT_KG, GRAVITY_M_S2, LIFT_TABLE, LOWER_REFERENCE_PA, LOWER_TABLE, STROKE_M,
 };
 use super::linkage;
+use crate::polyline::value_at;
 
 /// Where and how a campaign is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -47,16 +48,7 @@ impl Course {
     /// Current at a time, A; before the first knot and behind the last one as there, zero without knots.
     #[must_use]
     pub fn at(&self, time_s: f64) -> f64 {
-        let behind = self.0.partition_point(|knot| knot.0 <= time_s);
-        match (behind, self.0.len()) {
-            (_, 0) => 0.0,
-            (0, _) => self.0[0].1,
-            (n, all) if n == all => self.0[n - 1].1,
-            (n, _) => {
-                let ((t0, i0), (t1, i1)) = (self.0[n - 1], self.0[n]);
-                i0 + (i1 - i0) * (time_s - t0) / (t1 - t0)
-            }
-        }
+        value_at(&self.0, time_s)
     }
 
     /// Up to a current, along it, and down again; `hold_s` counts from the ramp's start to the next ramp's.
