@@ -76,15 +76,6 @@ impl Part {
         }
     }
 
-    /// Bytes that are programmed together.
-    #[must_use]
-    pub const fn program_bytes(self) -> u32 {
-        match self {
-            Self::Stm32f405 => 4,
-            Self::Stm32g474 => 8,
-        }
-    }
-
     /// Frequencies that the low-speed oscillator may have, Hz (data sheets).
     #[must_use]
     pub const fn slow_clock_hz(self) -> [f64; 2] {
