@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 
 use crate::second_rig::campaign_writer::LOAD_SIGMA;
 use crate::second_rig::instruments::{Instruments, stated_noise};
-use crate::second_rig::manoeuvres::{Manoeuvre, Plan, Stand, runs};
+use crate::second_rig::manoeuvres::{Manoeuvre, Plan, runs};
 use crate::second_rig::test_stand::SAMPLE_RATE_HZ;
 
 /// Steps of the truth from one sample to the next.
@@ -66,21 +66,13 @@ fn log(
         })
         .collect();
     let error: f64 = StandardNormal.sample(random);
-    // As it is stated in the campaign, and as it is.
-    let (stated, real, start_deg) = match manoeuvre.stand {
-        Stand::Hitch { load_kg, start_deg } => {
-            let real_kg = load_kg * (1.0 + LOAD_SIGMA * error);
-            let [stated, real] = [load_kg, real_kg].map(|load_kg| Bench::Hitch { load_kg });
-            (stated, real, start_deg)
-        }
-        Stand::Flow {
-            port_bar: port_pressure_bar,
-        } => {
-            let bench = Bench::Flow { port_pressure_bar };
-            (bench, bench, 0.0)
-        }
+    let real = match manoeuvre.bench {
+        Bench::Hitch { load_kg } => Bench::Hitch {
+            load_kg: load_kg * (1.0 + LOAD_SIGMA * error),
+        },
+        bench @ Bench::Flow { .. } => bench,
     };
-    let stand = real.rig(start_deg.to_radians());
+    let stand = real.rig(manoeuvre.start_deg.to_radians());
     let trace = simulate(rig, stand, manoeuvre.oil_temperature_c, &fine_s, &currents);
     let readings: Vec<[f64; 4]> = (0..=samples)
         .map(|sample| Channel::ALL.map(|channel| trace.channel(channel)[sample * FINER]))
@@ -91,7 +83,7 @@ fn log(
     };
     Run {
         file: manoeuvre.file.clone(),
-        bench: stated,
+        bench: manoeuvre.bench,
         oil_temperature_c: manoeuvre.oil_temperature_c,
         oil_temperature_known: true,
         time_s: fine_s.iter().copied().step_by(FINER).collect(),

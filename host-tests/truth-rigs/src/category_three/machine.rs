@@ -2,12 +2,7 @@
 
 use crate::polyline::value_at;
 
-/// Pascal in a bar.
-pub const BAR: f64 = 1e5;
-/// m3/s in a litre per minute.
-pub const LPM: f64 = 1e-3 / 60.0;
-/// Standard gravity, m/s2.
-pub const GRAVITY_M_S2: f64 = 9.806_65;
+pub use crate::second_rig::data_sheet::{BAR, GRAVITY_M_S2, LPM};
 
 /// Bore of each of the two cylinders, mm.
 pub const BORE_MM: f64 = 90.0;

@@ -13,7 +13,7 @@ use serde_json::{Map, Value, json};
 
 use super::draw::Case;
 use super::instruments::stated_noise;
-use super::manoeuvres::{Course, Manoeuvre, Plan, Stand, runs};
+use super::manoeuvres::{Course, Manoeuvre, Plan, runs};
 use super::physics::Physics;
 use super::test_stand::{Circumstances, Family, Reading, SAMPLE_RATE_HZ, measure};
 
@@ -103,12 +103,7 @@ pub fn log(case: &Case, physics: &Physics, run: &PlannedRun, random: &mut impl R
         std::array::from_fn(|channel| case.instruments.log_channel(channel, &readings, random));
     Run {
         file: manoeuvre.file.clone(),
-        bench: match manoeuvre.stand {
-            Stand::Hitch { load_kg, .. } => Bench::Hitch { load_kg },
-            Stand::Flow { port_bar } => Bench::Flow {
-                port_pressure_bar: port_bar,
-            },
-        },
+        bench: manoeuvre.bench,
         oil_temperature_c: manoeuvre.oil_temperature_c,
         oil_temperature_known: true,
         time_s,

@@ -1,5 +1,6 @@
 //! Manoeuvres of lab and field plans: loads, temperatures and current traces.
 
+use hitch_campaign::Bench;
 use rand::Rng;
 
 use super::data_sheet::{
@@ -15,23 +16,6 @@ pub enum Plan {
     Lab,
     /// Duty cycles and a hold.
     Field,
-}
-
-/// Bench of the valve block.
-#[derive(Debug, Clone, Copy)]
-pub enum Stand {
-    /// Cylinder, linkage, load.
-    Hitch {
-        /// Load as weighed, kg.
-        load_kg: f64,
-        /// Rocker angle at the start, degree.
-        start_deg: f64,
-    },
-    /// The cylinder port held at a pressure, bar.
-    Flow {
-        /// Port pressure, bar.
-        port_bar: f64,
-    },
 }
 
 /// Course of a current: straight lines between knots of time, s, and current, A.
@@ -88,8 +72,10 @@ const SWITCHED_S: f64 = 0.008;
 pub struct Manoeuvre {
     /// File name.
     pub file: String,
-    /// Bench.
-    pub stand: Stand,
+    /// Bench, with the load as weighed.
+    pub bench: Bench,
+    /// Rocker angle of a hitch at the start, degree.
+    pub start_deg: f64,
     /// Oil temperature, degC.
     pub oil_temperature_c: f64,
     /// Duration, s.
@@ -121,10 +107,11 @@ impl Manoeuvre {
         }
     }
 
-    fn still(file: String, stand: Stand, oil_temperature_c: f64, duration_s: f64) -> Self {
+    fn still(file: String, bench: Bench, oil_temperature_c: f64, duration_s: f64) -> Self {
         Self {
             file,
-            stand,
+            bench,
+            start_deg: f64::NAN,
             oil_temperature_c,
             duration_s,
             lift: Course::default(),
@@ -206,7 +193,10 @@ fn flow_bench() -> Vec<Manoeuvre> {
         let name = if way == Way::Lift { "lift" } else { "lower" };
         let file = format!("flow_{name}_{port_bar:03}bar.csv");
         let duration_s = levels_a.len() as f64 * hold_s;
-        let still = Manoeuvre::still(file, Stand::Flow { port_bar }, 40.0, duration_s);
+        let bench = Bench::Flow {
+            port_pressure_bar: port_bar,
+        };
+        let still = Manoeuvre::still(file, bench, 40.0, duration_s);
         Manoeuvre::of_one_valve(way, Course::stairs(levels_a, hold_s), still)
     };
     vec![
@@ -231,23 +221,21 @@ fn single_move(
         Way::Lift => ("lift", 52.9),
         Way::Lower => ("lower", 130.6),
     };
-    let stand = Stand::Hitch {
-        load_kg,
-        start_deg: from_deg + random.random_range(-0.5..0.5),
-    };
+    let start_deg = from_deg + random.random_range(-0.5..0.5);
     let mut course = Course::default();
     course.pulse(0.5, seconds, current_a);
     let file = format!("{name}_{current_a}A_{load_kg:03}kg.csv");
-    let still = Manoeuvre::still(file, stand, 40.0, seconds + 2.0);
+    let still = Manoeuvre::still(file, Bench::Hitch { load_kg }, 40.0, seconds + 2.0);
+    let still = Manoeuvre { start_deg, ..still };
     Manoeuvre::of_one_valve(way, course, still)
 }
 
 fn hold(load_kg: f64, start_deg: f64, random: &mut impl Rng) -> Manoeuvre {
-    let stand = Stand::Hitch {
-        load_kg,
+    let file = format!("hold_{load_kg}kg.csv");
+    Manoeuvre {
         start_deg: start_deg + random.random_range(-0.5..0.5),
-    };
-    Manoeuvre::still(format!("hold_{load_kg}kg.csv"), stand, 40.0, 30.0)
+        ..Manoeuvre::still(file, Bench::Hitch { load_kg }, 40.0, 30.0)
+    }
 }
 
 /// Moves up and down at random, planned by the data sheet to stay in a part of the stroke.
@@ -260,12 +248,10 @@ fn duty(
     random: &mut impl Rng,
 ) -> Manoeuvre {
     let mut travel_m: f64 = 0.05 + random.random_range(-0.004..0.004);
-    let stand = Stand::Hitch {
-        load_kg,
-        start_deg: linkage::at(travel_m).rocker_deg,
-    };
     let file = format!("{name}_{load_kg:03}kg_{oil_temperature_c}C.csv");
-    let mut run = Manoeuvre::still(file, stand, oil_temperature_c, duration_s);
+    let bench = Bench::Hitch { load_kg };
+    let mut run = Manoeuvre::still(file, bench, oil_temperature_c, duration_s);
+    run.start_deg = linkage::at(travel_m).rocker_deg;
     let mut time_s = 0.5 + random.random_range(0.0..0.7);
     while time_s < duration_s - 2.0 {
         let upwards = 0.5 + 0.8 * (0.5 * STROKE_M - travel_m) / (0.5 * STROKE_M);
