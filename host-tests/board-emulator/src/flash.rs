@@ -317,31 +317,25 @@ impl Flash {
         if value >> 16 & 1 == 0 {
             return None;
         }
-        match (self.part, value & 0b111) {
-            (Part::Stm32f405, 0b010) => self.erase_sector(value >> 3 & 0xF, now_ns),
-            (Part::Stm32g474, 0b010) => {
-                self.erase_page(value >> 3 & 0x7F, value >> 11 & 1 == 1, now_ns)
-            }
+        match value & 0b111 {
+            0b010 => self.erase(value, now_ns),
             _ => Some(format!("the flash is started with {value:#010x}")),
         }
     }
 
-    fn erase_sector(&mut self, sector: u32, now_ns: f64) -> Option<String> {
-        match sector.checked_sub(8) {
-            Some(piece @ 0..=3) => self.erase(piece, now_ns),
-            _ => Some(format!("sector {sector} of the program is erased")),
+    /// Erases the sector or page that the control register selects.
+    fn erase(&mut self, control: u32, now_ns: f64) -> Option<String> {
+        let (kind, number, first, pieces) = match self.part {
+            Part::Stm32f405 => ("sector", control >> 3 & 0xF, 8, 4),
+            Part::Stm32g474 => ("page", control >> 3 & 0x7F, 122, 6),
+        };
+        let is_in_bank = self.part == Part::Stm32f405 || control >> 11 & 1 == 1;
+        match number.checked_sub(first) {
+            Some(piece) if piece < pieces && is_in_bank => {
+                self.change(Operation::Erase { piece }, now_ns + erase_ns(self.part))
+            }
+            _ => Some(format!("{kind} {number} of the program is erased")),
         }
-    }
-
-    fn erase_page(&mut self, page: u32, second_bank: bool, now_ns: f64) -> Option<String> {
-        match page.checked_sub(122) {
-            Some(piece @ 0..=5) if second_bank => self.erase(piece, now_ns),
-            _ => Some(format!("page {page} of the program is erased")),
-        }
-    }
-
-    fn erase(&mut self, piece: u32, now_ns: f64) -> Option<String> {
-        self.change(Operation::Erase { piece }, now_ns + erase_ns(self.part))
     }
 
     fn change(&mut self, operation: Operation, end_ns: f64) -> Option<String> {

@@ -172,7 +172,7 @@ impl Part {
     }
 }
 
-/// A port of sixteen pins.
+/// A port of sixteen pins, by its place behind GPIOA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Port {
     /// GPIOA.

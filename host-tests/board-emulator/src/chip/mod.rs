@@ -203,12 +203,7 @@ impl Chip {
     }
 
     const fn port(&self, port: Port) -> u32 {
-        let base = self.part.addresses().gpio;
-        match port {
-            Port::A => base,
-            Port::B => base + 0x400,
-            Port::C => base + 0x800,
-        }
+        self.part.addresses().gpio + 0x400 * port as u32
     }
 
     /// Other nodes send these frames, one after the other.

@@ -125,10 +125,7 @@ fn react(setup: &Setup, inject: fn(&mut Samples, usize)) -> Result<f64> {
         step += 1;
     })?;
     // Nothing comes back while the fault is there.
-    for step in 0..200 {
-        rig.tick_with(|contacts| inject(&mut contacts.samples, step))?;
-        ensure!(!rig.is_driven(), "a coil is driven again {step} ms later");
-    }
+    rig.stays_off(200, |contacts, step| inject(&mut contacts.samples, step))?;
     ensure!(rig.board.resets.is_empty(), "the ECU was reset");
     Ok(took_ms)
 }
@@ -165,13 +162,8 @@ pub fn enable_line(setup: &Setup) -> Result<String> {
         rig.force_read_back(stuck);
         rig.pick_up()?;
         rig.bench.operator.apply(Order::Lever(110.0));
-        for step in 0..1_000 {
-            rig.tick_with(|_| {})?;
-            ensure!(
-                !rig.is_driven(),
-                "stuck at {stuck}: a coil is driven after {step} ms"
-            );
-        }
+        rig.stays_off(1_000, |_, _| {})
+            .with_context(|| format!("stuck at {stuck}"))?;
         ensure!(
             rig.board.resets.is_empty(),
             "stuck at {stuck}: {:?}",

@@ -58,6 +58,19 @@ impl<'m> Rig<'m> {
         Ok(rig)
     }
 
+    /// Some milliseconds in which no coil may be driven; `tamper` knows their number.
+    pub fn stays_off(
+        &mut self,
+        milliseconds: usize,
+        mut tamper: impl FnMut(&mut Contacts, usize),
+    ) -> Result<()> {
+        for step in 0..milliseconds {
+            self.tick_with(|contacts| tamper(contacts, step))?;
+            ensure!(!self.is_driven(), "a coil is driven {step} ms later");
+        }
+        Ok(())
+    }
+
     /// Forces the enable line's read-back to a level.
     pub fn force_read_back(&mut self, level: bool) {
         let levels = &mut self.board.chip().conditions.levels;
@@ -72,10 +85,7 @@ impl<'m> Rig<'m> {
             took_ms < most_ms,
             "off after {took_ms} ms, {most_ms} ms allowed"
         );
-        for step in 0..READY_MS + 400 {
-            self.tick_with(|_| {})?;
-            ensure!(!self.is_driven(), "a coil is driven again {step} ms later");
-        }
+        self.stays_off(READY_MS + 400, |_, _| {})?;
         let resets = &self.board.resets;
         ensure!(*resets == [Stop::Watchdog], "{resets:?}");
         Ok(took_ms)

@@ -1,6 +1,6 @@
 //! Power-up.
 
-use anyhow::{Result, ensure};
+use anyhow::{Context as _, Result, ensure};
 
 use super::rig::{READY_MS, Rig};
 use super::setup::Setup;
@@ -79,10 +79,8 @@ pub fn dead_crystal(setup: &Setup) -> Result<String> {
         ..Conditions::typical(setup.layout)
     };
     let mut rig = Rig::erased(setup, conditions)?;
-    for _ in 0..1_500 {
-        rig.tick_with(|_| {})?;
-        ensure!(!rig.is_driven(), "a coil is driven without a crystal");
-    }
+    rig.stays_off(1_500, |_, _| {})
+        .context("without a crystal")?;
     let resets = rig.board.resets.len();
     ensure!(
         resets >= 2
