@@ -24,6 +24,7 @@ use hitch_identification::explanation::explain::explain;
 use hitch_plant::{AddedEffect, Dynamics, Effect, Model, Place};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
+use truth_rigs::hidden_effects::starting_point;
 use truth_rigs::second_rig::test_stand::Family;
 use truth_rigs::simulated_lab::campaign_of;
 
@@ -182,10 +183,7 @@ impl Case {
 
     /// What the case takes in this process.
     fn measure(self) -> Result<Taken> {
-        let model = match self.family {
-            Family::Steady => hitch_model_file::nominal(),
-            Family::Dynamic => hitch_model_file::dynamic(),
-        };
+        let model = starting_point(self.family);
         let friction = hitch_effects::find("coulomb-friction").context("no such effect")?;
         let rig = model.with_effects(vec![AddedEffect::typical(friction)]);
         let mut random = Pcg64::seed_from_u64(SEED);

@@ -26,21 +26,17 @@ const PRESSURE_NOISE_MILLIBAR: i32 = 150;
 const CURRENT_NOISE_MILLIAMPERE: i32 = 5;
 const SUPPLY_V: f64 = 13.8;
 
-/// Modifications of the signals between hitch and controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Fault {
-    None,
-    AngleLost,
-    AngleFrozen,
-    AngleJumps,
-    AngleExtreme,
-    LeverLost,
-    LeverExtreme,
-    PressuresLost,
-    PressuresExtreme,
-    AllLost,
-    AllExtreme,
+/// What a fault of the signals may draw on.
+struct Spoils<'r> {
+    /// The inputs of the step before.
+    last: Inputs,
+    /// The largest or the smallest number.
+    extreme: i32,
+    random: &'r mut fastrand::Rng,
 }
+
+/// A modification of the signals between hitch and controller.
+type Fault = fn(&mut Inputs, Spoils<'_>);
 
 /// A piece of the script.
 struct Scene {
@@ -55,7 +51,7 @@ const fn scene(steps: u32, lever_degree: i32) -> Scene {
         steps,
         lever_degree,
         jog_degree_per_second: None,
-        fault: Fault::None,
+        fault: |_, _| {},
     }
 }
 
@@ -96,39 +92,41 @@ const SCRIPT: &[Scene] = &[
     scene(1_500, 70),
     // Dropouts: bridged, then too long, during motion.
     scene(300, 125),
-    scene(4, 125).with(Fault::AngleLost),
+    scene(4, 125).with(|inputs, _| inputs.rocker_angle = None),
     scene(300, 125),
-    scene(30, 125).with(Fault::AngleLost),
+    scene(30, 125).with(|inputs, _| inputs.rocker_angle = None),
     scene(900, 125),
     scene(900, 60),
     scene(900, 130),
     // A frozen angle while lifting, and one that jumps while lowering.
-    scene(200, 60).with(Fault::AngleFrozen),
+    scene(200, 60).with(|inputs, spoils| inputs.rocker_angle = spoils.last.rocker_angle),
     scene(900, 60),
     scene(900, 130),
     scene(900, 50),
     scene(900, 130),
     scene(100, 70),
-    scene(20, 70).with(Fault::AngleJumps),
+    scene(20, 70).with(|inputs, spoils| {
+        inputs.rocker_angle = Some(MilliDegree(spoils.random.i32(45_000..135_000)));
+    }),
     scene(900, 130),
     scene(900, 50),
     scene(900, 120),
     // Pressure sensors come and go: the controller has to do without them.
-    scene(900, 80).with(Fault::PressuresLost),
-    scene(700, 110).with(Fault::PressuresExtreme),
+    scene(900, 80).with(|inputs, _| set_pressures(inputs, None)),
+    scene(700, 110).with(|inputs, spoils| set_pressures(inputs, Some(spoils.extreme))),
     scene(700, 80),
     // The lever is lost, then absurd.
-    scene(300, 110).with(Fault::LeverLost),
+    scene(300, 110).with(|inputs, _| inputs.lever = None),
     scene(900, 50),
     scene(900, 130),
-    scene(50, 70).with(Fault::LeverExtreme),
+    scene(50, 70).with(|inputs, spoils| inputs.lever = Some(MilliDegree(spoils.extreme))),
     scene(900, 50),
     scene(900, 130),
     // Everything at once.
-    scene(20, 90).with(Fault::AngleExtreme),
+    scene(20, 90).with(|inputs, spoils| inputs.rocker_angle = Some(MilliDegree(spoils.extreme))),
     scene(800, 50),
-    scene(200, 90).with(Fault::AllExtreme),
-    scene(200, 90).with(Fault::AllLost),
+    scene(200, 90).with(|inputs, spoils| *inputs = all_extreme(spoils.extreme)),
+    scene(200, 90).with(|inputs, _| *inputs = Inputs::default()),
     scene(900, 50),
     scene(900, 130),
     scene(1_500, 90),
@@ -197,7 +195,7 @@ impl Sensors {
         let reading = plant.reading();
         let mut noisy =
             |value: f64, noise: i32| (value * 1e3).round() as i32 + self.random.i32(-noise..=noise);
-        let healthy = Inputs {
+        let mut inputs = Inputs {
             lever: Some(MilliDegree(self.lever)),
             jog: scene
                 .jog_degree_per_second
@@ -221,57 +219,28 @@ impl Sensors {
             step_time: Some(Microsecond(noisy(1.0, 20))),
             ..Inputs::default()
         };
-        let inputs = self.spoil(scene.fault, healthy);
-        self.last = inputs;
-        inputs
-    }
-
-    fn spoil(&mut self, fault: Fault, healthy: Inputs) -> Inputs {
         let extreme = if self.random.bool() {
             i32::MAX
         } else {
             i32::MIN
         };
-        match fault {
-            Fault::None => healthy,
-            Fault::AngleLost => Inputs {
-                rocker_angle: None,
-                ..healthy
+        (scene.fault)(
+            &mut inputs,
+            Spoils {
+                last: self.last,
+                extreme,
+                random: &mut self.random,
             },
-            Fault::AngleFrozen => Inputs {
-                rocker_angle: self.last.rocker_angle,
-                ..healthy
-            },
-            Fault::AngleJumps => Inputs {
-                rocker_angle: Some(MilliDegree(self.random.i32(45_000..135_000))),
-                ..healthy
-            },
-            Fault::AngleExtreme => Inputs {
-                rocker_angle: Some(MilliDegree(extreme)),
-                ..healthy
-            },
-            Fault::LeverLost => Inputs {
-                lever: None,
-                ..healthy
-            },
-            Fault::LeverExtreme => Inputs {
-                lever: Some(MilliDegree(extreme)),
-                ..healthy
-            },
-            Fault::PressuresLost => Inputs {
-                cylinder_pressure: None,
-                pump_pressure: None,
-                ..healthy
-            },
-            Fault::PressuresExtreme => Inputs {
-                cylinder_pressure: Some(MilliBar(extreme)),
-                pump_pressure: Some(MilliBar(extreme)),
-                ..healthy
-            },
-            Fault::AllLost => Inputs::default(),
-            Fault::AllExtreme => all_extreme(extreme),
-        }
+        );
+        self.last = inputs;
+        inputs
     }
+}
+
+/// Both pressures with this number, or none.
+fn set_pressures(inputs: &mut Inputs, millibar: Option<i32>) {
+    inputs.cylinder_pressure = millibar.map(MilliBar);
+    inputs.pump_pressure = millibar.map(MilliBar);
 }
 
 /// Every signal valid, and as far out as it can be coded. The enable line is healthy: its fault lasts until restart.

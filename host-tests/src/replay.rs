@@ -2,15 +2,13 @@
 
 use hitch_controller::Controller;
 use hitch_quantities::signals::{INPUT_BYTES, OUTPUT_BYTES};
-use hitch_quantities::{Calibration, Inputs, Outputs};
+use hitch_quantities::{Inputs, Outputs};
+
+use crate::teaching::nominal;
 
 /// The controller at power-up, with the nominal calibration: as in the image.
 pub fn controller() -> Controller {
-    Controller::new(
-        Calibration::nominal()
-            .validate()
-            .expect("the nominal calibration is shipped"),
-    )
+    Controller::new(nominal())
 }
 
 /// The outputs of each step, from power-up on, with the nominal calibration.

@@ -4,7 +4,7 @@
 use super::can;
 use super::chip::Chip;
 use super::layout::Layout;
-use super::part::{DBGMCU, Part, Pin, Port};
+use super::part::{Part, Pin, Port};
 
 /// Shortest and longest time that the watchdog may give, ns: a millisecond is kicked with room to spare, and coils are
 /// off 25 ms after the processor has died.
@@ -133,16 +133,12 @@ fn pins(chip: &Chip) -> Vec<String> {
 }
 
 fn debug_freezes(chip: &Chip) -> Vec<String> {
-    let (timer, watchdog) = match chip.part {
-        Part::Stm32f405 => ((0x0C, 0), (0x08, 12)),
-        Part::Stm32g474 => ((0x10, 11), (0x08, 12)),
-    };
+    let [timer, watchdog] = chip.debug_stops();
     let mut findings = Vec::new();
-    let stops = |(offset, bit): (u32, u32)| chip.registers.bit(DBGMCU + offset, bit);
-    if !stops(timer) {
+    if !timer {
         findings.push("a debugger that halts the processor doesn't stop TIM1".into());
     }
-    if stops(watchdog) {
+    if watchdog {
         findings.push("a debugger that halts the processor stops the watchdog".into());
     }
     findings

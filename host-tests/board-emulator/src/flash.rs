@@ -47,6 +47,9 @@ pub enum Extent {
     Half,
 }
 
+/// A power cut, and the contents that it leaves.
+pub type Cut = (String, Contents);
+
 /// Contents of the flash, which survive a power cut.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents {
@@ -103,21 +106,31 @@ impl Contents {
         }
     }
 
+    /// What a power cut before and in the middle of each operation leaves, and then what all of them leave: with the number
+    /// of the operation, and when.
+    #[must_use]
+    pub fn cut_in(&self, part: Part, operations: &[Operation]) -> (Vec<Cut>, Self) {
+        let mut contents = self.clone();
+        let mut cuts = Vec::new();
+        for (number, operation) in operations.iter().enumerate() {
+            let mut half = contents.clone();
+            half.apply(part, operation, Extent::Half);
+            cuts.push((
+                format!("before operation {number}, {operation:?}"),
+                contents.clone(),
+            ));
+            cuts.push((format!("in operation {number}, {operation:?}"), half));
+            contents.apply(part, operation, Extent::Whole);
+        }
+        (cuts, contents)
+    }
+
     /// The word at an offset.
     #[must_use]
     pub fn word(&self, offset: u32) -> u32 {
         let at = offset as usize & !3;
         u32::from_le_bytes([0, 1, 2, 3].map(|index| self.bytes[at + index]))
     }
-}
-
-/// Result of a write to the controller or the flash.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Effect {
-    /// Nothing out of the ordinary.
-    None,
-    /// The image violated the manual.
-    Violation(String),
 }
 
 /// Flash and its controller.
@@ -211,14 +224,14 @@ impl Flash {
         }
     }
 
-    /// A write of a register.
+    /// A write of a register; returns its fault, if any.
     pub fn write_register(
         &mut self,
         offset: u32,
         value: u32,
         registers: &mut Registers,
         now_ns: f64,
-    ) -> Effect {
+    ) -> Option<String> {
         let address = self.base + offset;
         let (key, option_key) = match self.part {
             Part::Stm32f405 => (0x04, 0x08),
@@ -230,12 +243,12 @@ impl Flash {
         if offset == option_key {
             self.option_key = self.option_key.wrapping_add(value);
             self.options_unlocked = true;
-            return Effect::None;
+            return None;
         }
         if offset == self.status() {
             // Writing ones clears.
             registers.modify(address, value, 0);
-            return Effect::None;
+            return None;
         }
         if offset == self.control() {
             return self.write_control(value, registers, now_ns);
@@ -244,7 +257,7 @@ impl Flash {
             // Resetting the data cache is possible while it is off.
             if value >> 12 & 1 == 1 {
                 if registers.bit(address, 10) || value >> 10 & 1 == 1 {
-                    return Effect::Violation("the data cache is reset while it is on".into());
+                    return Some("the data cache is reset while it is on".into());
                 }
                 self.cached.clear();
             }
@@ -257,15 +270,15 @@ impl Flash {
         if programs_options {
             return self.program_options(now_ns);
         }
-        Effect::None
+        None
     }
 
-    fn program_options(&mut self, now_ns: f64) -> Effect {
+    fn program_options(&mut self, now_ns: f64) -> Option<String> {
         self.busy_until_ns = now_ns + 500e6;
-        Effect::Violation("the application programs option bytes".into())
+        Some("the application programs option bytes".into())
     }
 
-    fn take_key(&mut self, value: u32) -> Effect {
+    fn take_key(&mut self, value: u32) -> Option<String> {
         match (self.key, value) {
             (0, 0x4567_0123) => self.key = 1,
             (1, 0xCDEF_89AB) => {
@@ -274,70 +287,65 @@ impl Flash {
             }
             _ => {
                 self.key = 2;
-                return Effect::Violation(
-                    "a wrong key locks the flash until the next reset".into(),
-                );
+                return Some("a wrong key locks the flash until the next reset".into());
             }
         }
-        Effect::None
+        None
     }
 
-    fn write_control(&mut self, value: u32, registers: &mut Registers, now_ns: f64) -> Effect {
+    fn write_control(
+        &mut self,
+        value: u32,
+        registers: &mut Registers,
+        now_ns: f64,
+    ) -> Option<String> {
         let address = self.base + self.control();
         if !self.unlocked {
-            return Effect::Violation("the locked control register of the flash is written".into());
+            return Some("the locked control register of the flash is written".into());
         }
         if now_ns < self.busy_until_ns {
-            return Effect::Violation(
-                "the flash's control register is written while it is busy".into(),
-            );
+            return Some("the flash's control register is written while it is busy".into());
         }
         registers.set(address, value & !(1 << 16));
         if value >> CR_LOCK & 1 == 1 {
             self.unlocked = false;
-            return Effect::None;
+            return None;
         }
         if self.part == Part::Stm32g474 && value >> 17 & 1 == 1 {
             return self.program_options(now_ns);
         }
         if value >> 16 & 1 == 0 {
-            return Effect::None;
+            return None;
         }
-        match (self.part, value & 0b111) {
-            (Part::Stm32f405, 0b010) => self.erase_sector(value >> 3 & 0xF, now_ns),
-            (Part::Stm32g474, 0b010) => {
-                self.erase_page(value >> 3 & 0x7F, value >> 11 & 1 == 1, now_ns)
+        match value & 0b111 {
+            0b010 => self.erase(value, now_ns),
+            _ => Some(format!("the flash is started with {value:#010x}")),
+        }
+    }
+
+    /// Erases the sector or page that the control register selects.
+    fn erase(&mut self, control: u32, now_ns: f64) -> Option<String> {
+        let (kind, number, first, pieces) = match self.part {
+            Part::Stm32f405 => ("sector", control >> 3 & 0xF, 8, 4),
+            Part::Stm32g474 => ("page", control >> 3 & 0x7F, 122, 6),
+        };
+        let is_in_bank = self.part == Part::Stm32f405 || control >> 11 & 1 == 1;
+        match number.checked_sub(first) {
+            Some(piece) if piece < pieces && is_in_bank => {
+                self.change(Operation::Erase { piece }, now_ns + erase_ns(self.part))
             }
-            _ => Effect::Violation(format!("the flash is started with {value:#010x}")),
+            _ => Some(format!("{kind} {number} of the program is erased")),
         }
     }
 
-    fn erase_sector(&mut self, sector: u32, now_ns: f64) -> Effect {
-        match sector.checked_sub(8) {
-            Some(piece @ 0..=3) => self.erase(piece, now_ns),
-            _ => Effect::Violation(format!("sector {sector} of the program is erased")),
-        }
-    }
-
-    fn erase_page(&mut self, page: u32, second_bank: bool, now_ns: f64) -> Effect {
-        match page.checked_sub(122) {
-            Some(piece @ 0..=5) if second_bank => self.erase(piece, now_ns),
-            _ => Effect::Violation(format!("page {page} of the program is erased")),
-        }
-    }
-
-    fn erase(&mut self, piece: u32, now_ns: f64) -> Effect {
-        self.change(Operation::Erase { piece }, now_ns + erase_ns(self.part))
-    }
-
-    fn change(&mut self, operation: Operation, end_ns: f64) -> Effect {
+    fn change(&mut self, operation: Operation, end_ns: f64) -> Option<String> {
         self.contents.apply(self.part, &operation, Extent::Whole);
         self.operations.push(operation);
         self.busy_until_ns = end_ns;
-        Effect::None
+        None
     }
 
-    /// A write to the data's place.
+    /// A write to the data's place; returns its fault, if any.
     pub fn write(
         &mut self,
         offset: u32,
@@ -345,10 +353,10 @@ impl Flash {
         value: u32,
         registers: &mut Registers,
         now_ns: f64,
-    ) -> Effect {
+    ) -> Option<String> {
         let control = registers.get(self.base + self.control());
         if control & 1 == 0 || !self.unlocked || size != 4 || !offset.is_multiple_of(4) {
-            return Effect::Violation(format!(
+            return Some(format!(
                 "flash is written at {offset:#x} without programming"
             ));
         }
@@ -356,30 +364,30 @@ impl Flash {
         let now_ns = now_ns.max(self.busy_until_ns);
         match self.part {
             Part::Stm32f405 if control >> 8 & 3 != 2 => {
-                Effect::Violation("words are programmed with another parallelism".into())
+                Some("words are programmed with another parallelism".into())
             }
             Part::Stm32f405 => self.program(offset, &value.to_le_bytes(), now_ns),
             Part::Stm32g474 => match self.half.take() {
                 None if offset.is_multiple_of(8) => {
                     self.half = Some((offset, value));
-                    Effect::None
+                    None
                 }
                 Some((first, low)) if first + 4 == offset => {
                     let double = u64::from(value) << 32 | u64::from(low);
                     self.program(first, &double.to_le_bytes(), now_ns)
                 }
-                _ => Effect::Violation("a double word is programmed out of order".into()),
+                _ => Some("a double word is programmed out of order".into()),
             },
         }
     }
 
-    fn program(&mut self, offset: u32, bytes: &[u8], now_ns: f64) -> Effect {
+    fn program(&mut self, offset: u32, bytes: &[u8], now_ns: f64) -> Option<String> {
         let at = offset as usize;
         let blank = self.contents.bytes[at..at + bytes.len()]
             .iter()
             .all(|&byte| byte == 0xFF);
         if self.part == Part::Stm32g474 && (!blank || self.contents.damaged.contains(&offset)) {
-            return Effect::Violation(format!(
+            return Some(format!(
                 "the double word at {offset:#x} is programmed twice"
             ));
         }
@@ -423,10 +431,7 @@ mod tests {
 
     fn unlock(flash: &mut Flash, registers: &mut Registers, key: u32) {
         for value in KEYS {
-            assert_eq!(
-                flash.write_register(key, value, registers, 0.0),
-                Effect::None
-            );
+            assert_eq!(flash.write_register(key, value, registers, 0.0), None);
         }
     }
 
@@ -434,11 +439,11 @@ mod tests {
     fn a_locked_flash_refuses_and_a_wrong_key_keeps_it_locked() {
         let (mut flash, mut registers) = flash(Part::Stm32f405);
         let refused = flash.write_register(0x10, 1, &mut registers, 0.0);
-        assert!(matches!(refused, Effect::Violation(_)));
+        assert!(refused.is_some());
         let wrong = flash.write_register(0x04, 1, &mut registers, 0.0);
-        assert!(matches!(wrong, Effect::Violation(_)));
+        assert!(wrong.is_some());
         let after = flash.write_register(0x04, KEYS[0], &mut registers, 0.0);
-        assert!(matches!(after, Effect::Violation(_)));
+        assert!(after.is_some());
     }
 
     #[test]
@@ -449,10 +454,7 @@ mod tests {
         unlock(&mut flash, &mut registers, 0x04);
         // Programming by words of 32 bits.
         flash.write_register(0x10, 0x201, &mut registers, 0.0);
-        assert_eq!(
-            flash.write(0, 4, 0x1234_5678, &mut registers, 0.0),
-            Effect::None
-        );
+        assert_eq!(flash.write(0, 4, 0x1234_5678, &mut registers, 0.0), None);
         assert_eq!(flash.read(0, &registers), (u32::MAX, None), "stale");
         flash.write_register(0, 0x200, &mut registers, 0.0);
         flash.write_register(0, 0x1200, &mut registers, 0.0);
@@ -484,10 +486,7 @@ mod tests {
         unlock(&mut flash, &mut registers, 0x08);
         // Page 124 of the second bank.
         let erase = 1 << 1 | 124 << 3 | 1 << 11 | 1 << 16;
-        assert_eq!(
-            flash.write_register(0x14, erase, &mut registers, 0.0),
-            Effect::None
-        );
+        assert_eq!(flash.write_register(0x14, erase, &mut registers, 0.0), None);
         assert_eq!(flash.stalls_until_ns(0x0800_1000), 0.0);
         assert!(flash.stalls_until_ns(0x0807_E000) > 20e6);
     }

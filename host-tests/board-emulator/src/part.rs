@@ -76,15 +76,6 @@ impl Part {
         }
     }
 
-    /// Bytes that are programmed together.
-    #[must_use]
-    pub const fn program_bytes(self) -> u32 {
-        match self {
-            Self::Stm32f405 => 4,
-            Self::Stm32g474 => 8,
-        }
-    }
-
     /// Frequencies that the low-speed oscillator may have, Hz (data sheets).
     #[must_use]
     pub const fn slow_clock_hz(self) -> [f64; 2] {
@@ -181,7 +172,7 @@ impl Part {
     }
 }
 
-/// A port of sixteen pins.
+/// A port of sixteen pins, by its place behind GPIOA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Port {
     /// GPIOA.

@@ -44,6 +44,7 @@ fn run(arguments: &Arguments) -> Result<usize> {
         library: arguments.library.clone(),
         layout: arguments.board,
         image: Image::read(Path::new(&arguments.image))?,
+        model: hitch_model_file::nominal(),
     };
     let mut failed = 0;
     for (name, scenario) in chosen(&arguments.scenarios)? {

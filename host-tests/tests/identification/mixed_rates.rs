@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use hitch_campaign::Campaign;
+use hitch_campaign::{Bench, Campaign};
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
@@ -13,7 +13,7 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use truth_rigs::category_three::compressed_mdf::{Group, bytes};
-use truth_rigs::second_rig::manoeuvres::{Manoeuvre, Plan, Stand, runs};
+use truth_rigs::second_rig::manoeuvres::{Manoeuvre, Plan, runs};
 
 /// Step of the simulated truth, s.
 const STEP_S: f64 = 1e-3;
@@ -70,7 +70,7 @@ fn sampled(
 }
 
 fn log(model: &Model, manoeuvre: &Manoeuvre, rates: Rates, random: &mut Pcg64) -> Vec<u8> {
-    let Stand::Hitch { load_kg, start_deg } = manoeuvre.stand else {
+    let Bench::Hitch { load_kg } = manoeuvre.bench else {
         panic!("a run on the hitch");
     };
     let steps = (manoeuvre.duration_s / STEP_S).round() as usize;
@@ -82,7 +82,7 @@ fn log(model: &Model, manoeuvre: &Manoeuvre, rates: Rates, random: &mut Pcg64) -
     let currents: Vec<Currents> = time_s.iter().map(current).collect();
     let rig = Rig::Hitch(HitchRig {
         load_kg,
-        start_angle_rad: start_deg.to_radians(),
+        start_angle_rad: manoeuvre.start_deg.to_radians(),
     });
     let trace = simulate(model, rig, manoeuvre.oil_temperature_c, &time_s, &currents);
     let places = |(first, every): (usize, usize)| {
@@ -126,7 +126,7 @@ fn log(model: &Model, manoeuvre: &Manoeuvre, rates: Rates, random: &mut Pcg64) -
 
 fn campaign(folder: &Path, model: &Model, rates: Rates) -> Campaign {
     let mut random = Pcg64::seed_from_u64(SEED);
-    let on_hitch = |run: &Manoeuvre| matches!(run.stand, Stand::Hitch { .. });
+    let on_hitch = |run: &Manoeuvre| matches!(run.bench, Bench::Hitch { .. });
     let manoeuvres = runs(Plan::Lab, &mut random).into_iter().filter(on_hitch);
     let mut manifest = format!("format = 1\nname = \"rates\"\nsample_rate_hz = 100\n{COLUMNS}");
     for (index, manoeuvre) in manoeuvres.take(RUNS).enumerate() {
@@ -136,7 +136,7 @@ fn campaign(folder: &Path, model: &Model, rates: Rates) -> Campaign {
             log(model, &manoeuvre, rates, &mut random),
         )
         .unwrap();
-        let Stand::Hitch { load_kg, .. } = manoeuvre.stand else {
+        let Bench::Hitch { load_kg } = manoeuvre.bench else {
             continue;
         };
         manifest += &format!(

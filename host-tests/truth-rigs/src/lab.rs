@@ -1,6 +1,6 @@
 //! A lab that measures a planned manoeuvre on the second rig with a hidden effect, and explains its campaign.
 
-use hitch_campaign::{Campaign, Noise, Run};
+use hitch_campaign::{Campaign, Run};
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::design::plan::RunPlan;
@@ -10,11 +10,12 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
+use crate::hidden_effects::starting_point;
 use crate::second_rig::campaign_writer::{LOAD_SIGMA, PlannedRun, log};
 use crate::second_rig::draw::{Case, Kind, Wish, draw};
 use crate::second_rig::hidden::Fidelity;
 use crate::second_rig::hideable::find;
-use crate::second_rig::instruments::CHANNEL_SIGMA;
+use crate::second_rig::instruments::stated_noise;
 use crate::second_rig::manoeuvres::Plan;
 use crate::second_rig::on_order::on_order;
 use crate::second_rig::test_stand::{Circumstances, Family, SAMPLE_RATE_HZ};
@@ -52,10 +53,7 @@ impl Lab {
             known: |_| true,
         };
         let mut lab = Self {
-            model: match family {
-                Family::Steady => hitch_model_file::nominal(),
-                Family::Dynamic => hitch_model_file::dynamic(),
-            },
+            model: starting_point(family),
             case: draw(SEED, &wish),
             channels,
             random: Pcg64::seed_from_u64(SEED),
@@ -91,18 +89,12 @@ impl Lab {
     /// All that was measured, ready.
     #[must_use]
     pub fn experiment(&self) -> Experiment {
-        let current_sigma_a = Some(self.case.instruments.current_sigma_a);
         let campaign = Campaign {
             name: "lab".to_owned(),
             description: String::new(),
             sample_rate_hz: SAMPLE_RATE_HZ,
             synchronous: false,
-            noise: Noise {
-                lift_current_a: current_sigma_a,
-                lower_current_a: current_sigma_a,
-                channels: CHANNEL_SIGMA.map(Some),
-                oil_temperature_c: None,
-            },
+            noise: stated_noise(self.case.instruments.current_sigma_a),
             runs: self.runs.clone(),
         };
         Experiment::new(&campaign, &self.model)

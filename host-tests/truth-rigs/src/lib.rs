@@ -11,5 +11,6 @@ pub mod drawn_hitches;
 pub mod frozen_angle;
 pub mod hidden_effects;
 pub mod lab;
+pub mod polyline;
 pub mod second_rig;
 pub mod simulated_lab;

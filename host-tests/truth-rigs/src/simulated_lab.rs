@@ -1,21 +1,19 @@
 //! A lab campaign simulated with the project's own plant, so that the parameters of its effects have the meaning of the
 //! catalogue. Currents vary between samples, loads have weighing errors, instruments have noise and finite resolution.
 
-use hitch_campaign::{Bench, Campaign, Noise, Run};
+use hitch_campaign::{Bench, Campaign, Run};
 use hitch_plant::simulation::simulate;
 use hitch_plant::{Channel, Currents, Model};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
-use crate::second_rig::instruments::{CHANNEL_SIGMA, Instruments};
-use crate::second_rig::manoeuvres::{Manoeuvre, Plan, Stand, runs};
+use crate::second_rig::campaign_writer::LOAD_SIGMA;
+use crate::second_rig::instruments::{Instruments, stated_noise};
+use crate::second_rig::manoeuvres::{Manoeuvre, Plan, runs};
 use crate::second_rig::test_stand::SAMPLE_RATE_HZ;
 
 /// Steps of the truth from one sample to the next.
 const FINER: usize = 5;
-
-/// Relative error of a weighed load.
-const LOAD_SIGMA: f64 = 0.005;
 
 /// The second rig's plan of a lab campaign, driven on `rig`.
 #[must_use]
@@ -36,18 +34,12 @@ pub fn campaign_of(rig: &Model, count: usize, rate_hz: f64, random: &mut Pcg64) 
 
 fn logged(rig: &Model, manoeuvres: &[Manoeuvre], rate_hz: f64, random: &mut Pcg64) -> Campaign {
     let instruments = Instruments::good();
-    let noise = Some(instruments.current_sigma_a);
     Campaign {
         name: "simulated".to_owned(),
         description: String::new(),
         sample_rate_hz: rate_hz,
         synchronous: false,
-        noise: Noise {
-            lift_current_a: noise,
-            lower_current_a: noise,
-            channels: CHANNEL_SIGMA.map(Some),
-            oil_temperature_c: None,
-        },
+        noise: stated_noise(instruments.current_sigma_a),
         runs: manoeuvres
             .iter()
             .map(|manoeuvre| log(rig, manoeuvre, rate_hz, &instruments, random))
@@ -74,21 +66,13 @@ fn log(
         })
         .collect();
     let error: f64 = StandardNormal.sample(random);
-    // As it is stated in the campaign, and as it is.
-    let (stated, real, start_deg) = match manoeuvre.stand {
-        Stand::Hitch { load_kg, start_deg } => {
-            let real_kg = load_kg * (1.0 + LOAD_SIGMA * error);
-            let [stated, real] = [load_kg, real_kg].map(|load_kg| Bench::Hitch { load_kg });
-            (stated, real, start_deg)
-        }
-        Stand::Flow {
-            port_bar: port_pressure_bar,
-        } => {
-            let bench = Bench::Flow { port_pressure_bar };
-            (bench, bench, 0.0)
-        }
+    let real = match manoeuvre.bench {
+        Bench::Hitch { load_kg } => Bench::Hitch {
+            load_kg: load_kg * (1.0 + LOAD_SIGMA * error),
+        },
+        bench @ Bench::Flow { .. } => bench,
     };
-    let stand = real.rig(start_deg.to_radians());
+    let stand = real.rig(manoeuvre.start_deg.to_radians());
     let trace = simulate(rig, stand, manoeuvre.oil_temperature_c, &fine_s, &currents);
     let readings: Vec<[f64; 4]> = (0..=samples)
         .map(|sample| Channel::ALL.map(|channel| trace.channel(channel)[sample * FINER]))
@@ -99,7 +83,7 @@ fn log(
     };
     Run {
         file: manoeuvre.file.clone(),
-        bench: stated,
+        bench: manoeuvre.bench,
         oil_temperature_c: manoeuvre.oil_temperature_c,
         oil_temperature_known: true,
         time_s: fine_s.iter().copied().step_by(FINER).collect(),

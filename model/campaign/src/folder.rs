@@ -5,9 +5,6 @@ use hitch_input::source_file::SourceFile;
 use hitch_input::toml_reader::TomlTable;
 use std::path::{Path, PathBuf};
 
-/// The supported format version.
-const FORMAT: f64 = 1.0;
-
 /// The manifest in a folder.
 ///
 /// # Errors
@@ -33,19 +30,6 @@ pub fn folder_name(dir: &Path) -> String {
     let full = dir.canonicalize().unwrap_or_else(|_| dir.to_path_buf());
     let name = full.file_name().map(|name| name.to_string_lossy());
     name.map_or_else(|| "campaign".to_owned(), Into::into)
-}
-
-/// Checks the format version of a manifest.
-///
-/// # Errors
-/// It is missing or not supported.
-pub fn check_format(top: &TomlTable<'_>) -> Result<(), InputError> {
-    let format = top.required_number("format", f64::MIN..=f64::MAX)?;
-    if format == FORMAT {
-        return Ok(());
-    }
-    let what = format!("format {format} is not known");
-    Err(top.error_at("format", what, "this program reads format = 1"))
 }
 
 /// The path of the file that `key` names.

@@ -10,7 +10,7 @@ use hitch_plant::{Channel, Linkage};
 use crate::bus_log::BusSettings;
 use crate::columns::ColumnSettings;
 use crate::cut::Cut;
-use crate::folder::{check_format, file_in, file_name, folder_name, manifest_of};
+use crate::folder::{file_in, file_name, folder_name, manifest_of};
 use crate::recorded::{Bench, Campaign, CampaignError, Noise, Run};
 use crate::run_log;
 use crate::run_log::Settings;
@@ -61,7 +61,7 @@ pub fn read(
     longest_step_s: f64,
 ) -> Result<(Campaign, Vec<LogNotes>), CampaignError> {
     let top = TomlTable::parse(source)?;
-    check_format(&top)?;
+    top.check_format()?;
     top.only(&[
         "format",
         "name",

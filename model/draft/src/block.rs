@@ -134,7 +134,7 @@ fn usual_depth_m(run: &Run) -> Option<f64> {
 }
 
 /// A block that is not complete.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Open {
     in_soil: bool,
     number: f64,
@@ -152,13 +152,7 @@ impl Open {
         Self {
             in_soil,
             number,
-            samples: 0,
-            travel_m: 0.0,
-            depth_cm: 0.0,
-            speeds: [0.0; 3],
-            depth_speeds: [0.0; 3],
-            draft_n: 0.0,
-            draft_n2: 0.0,
+            ..Self::default()
         }
     }
 

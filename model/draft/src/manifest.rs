@@ -21,7 +21,7 @@
 
 use std::path::Path;
 
-use hitch_campaign::folder::{check_format, file_in, file_name, folder_name, manifest_of};
+use hitch_campaign::folder::{file_in, file_name, folder_name, manifest_of};
 use hitch_field::draft::Texture;
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::naming::offer_names;
@@ -66,7 +66,7 @@ impl Campaign {
             "columns",
             "run",
         ])?;
-        check_format(&top)?;
+        top.check_format()?;
         let name = top.text("name")?.map(str::to_owned);
         Ok(Self {
             name: name.unwrap_or_else(|| folder_name(dir)),

@@ -37,53 +37,32 @@ impl Described {
     };
 }
 
+/// Methods that return the field with their name.
+macro_rules! fields {
+    ($($name:ident: $kind:ty),* $(,)?) => {
+        $(fn $name(&self) -> $kind {
+            self.$name
+        })*
+    };
+}
+
 impl Effect for Described {
-    fn id(&self) -> &'static str {
-        self.id
-    }
-
-    fn form(&self) -> Option<&'static str> {
-        self.form
-    }
-
-    fn title(&self) -> &'static str {
-        self.title
-    }
-
-    fn equation(&self) -> &'static str {
-        self.equation
-    }
-
-    fn source(&self) -> &'static str {
-        self.source
-    }
-
-    fn shows(&self) -> &'static str {
-        self.shows
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        self.parameters
-    }
-
-    fn channels(&self) -> &'static [Channel] {
-        self.channels
+    fields! {
+        id: &'static str,
+        form: Option<&'static str>,
+        title: &'static str,
+        equation: &'static str,
+        source: &'static str,
+        shows: &'static str,
+        parameters: &'static [Parameter],
+        channels: &'static [Channel],
+        needs: Option<Dynamics>,
+        size_response: SizeResponse,
+        refines: bool,
     }
 
     fn rank(&self) -> usize {
         crate::order::rank(self.id)
-    }
-
-    fn needs(&self) -> Option<Dynamics> {
-        self.needs
-    }
-
-    fn size_response(&self) -> SizeResponse {
-        self.size_response
-    }
-
-    fn refines(&self) -> bool {
-        self.refines
     }
 
     fn attach(&self, values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {

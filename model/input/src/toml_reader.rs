@@ -149,6 +149,19 @@ impl<'a> TomlTable<'a> {
         Err(self.error_at(key, what, hint))
     }
 
+    /// Checks the format version of the file, which is 1.
+    ///
+    /// # Errors
+    /// It is missing or not supported.
+    pub fn check_format(&self) -> Result<(), InputError> {
+        let format = self.required_number("format", f64::MIN..=f64::MAX)?;
+        if format == 1.0 {
+            return Ok(());
+        }
+        let what = format!("format {format} is not known");
+        Err(self.error_at("format", what, "this program reads format = 1"))
+    }
+
     /// A required number.
     ///
     /// # Errors

@@ -49,7 +49,6 @@
 #![forbid(unsafe_code)]
 
 mod constants;
-mod format;
 mod meaning;
 mod quoted;
 mod read;

@@ -14,7 +14,6 @@ use hitch_plant::{
 use crate::constants::{
     CURRENT, CURVES, Constant, Curve, FLOW, TABLES, Variant, clear_others, unset,
 };
-use crate::format::FORMAT;
 use crate::{terms, variant};
 
 /// Range of the currents of a flow curve, A.
@@ -28,11 +27,7 @@ pub fn model(
     starting_point: impl Fn(&str) -> Option<Model>,
 ) -> Result<Model, InputError> {
     let top = TomlTable::parse(source)?;
-    let format = top.required_number("format", f64::MIN..=f64::MAX)?;
-    if format != FORMAT {
-        let what = format!("format {format} is not known");
-        return Err(top.error_at("format", what, "this program reads format = 1"));
-    }
+    top.check_format()?;
     top.only(
         &[
             &["format", "name", "base", "dynamics", "term", "effect"],

@@ -5,15 +5,15 @@ use std::fmt::Write as _;
 use hitch_input::input_error::InputError;
 use hitch_input::naming::offer_names;
 use hitch_input::source_file::SourceFile;
-use hitch_plant::{Constants, Dynamics, LinkageTable, Model, PumpKind, Valve, ValveCurve};
+use hitch_plant::{Constants, LinkageTable, Model, PumpKind, Valve, ValveCurve};
 
 use crate::constants::{
-    CONSTANTS, CURVES, CYLINDER_COUNT, Constant, Had, KINDS, TABLES, Variant, clear_others,
+    CONSTANTS, CYLINDER_COUNT, Constant, Had, KINDS, TABLES, Variant, clear_others,
 };
 use crate::meaning::meaning_of;
 use crate::quoted::quoted;
 use crate::round_trip::decimal;
-use crate::write::{curve_lines, variant_lines};
+use crate::write::{dynamics_name, kind_name, table_lines};
 
 /// Name of the pump's kind.
 const PUMP_KIND: &str = "pump.kind";
@@ -53,12 +53,7 @@ impl Template {
     /// There is no such constant: the fault and a suggested correction.
     pub fn get(&self, name: &str) -> Result<String, String> {
         match name {
-            PUMP_KIND => {
-                let kind = KINDS
-                    .iter()
-                    .find(|(_, kind)| *kind == self.constants.pump.kind);
-                return Ok(kind.map_or("", |(written, _)| *written).to_owned());
-            }
+            PUMP_KIND => return Ok(kind_name(self.constants.pump.kind).to_owned()),
             CYLINDER_NUMBER => return Ok(self.constants.cylinder.count.to_string()),
             _ => {}
         }
@@ -163,34 +158,19 @@ impl Template {
 
     /// The text. Writing to a string cannot fail, so the results are ignored.
     fn written(&self) -> String {
-        let dynamics = match self.constants.dynamics {
-            Dynamics::Steady => "steady",
-            Dynamics::Dynamic => "dynamic",
-        };
+        let dynamics = dynamics_name(self.constants.dynamics);
         let mut text = format!(
             "{HEAD}format = 1\nname = {}\n# steady: no inertia, stiff oil; dynamic: spool lag, compressible oil, inertia.\ndynamics = \"{dynamics}\"\n",
             quoted(&self.name)
         );
-        let mut constants = self.constants.clone();
         for table in TABLES {
             if let Some(meaning) = meaning_of(table, "") {
                 let _ = write!(text, "\n# {}", meaning.what);
             }
             let _ = write!(text, "\n[{table}]\n");
-            for (key, line) in variant_lines(&constants, table, true) {
+            for (key, line) in table_lines(&self.constants, table, true) {
                 comment(&mut text, table, key);
                 text += &line;
-            }
-            for constant in Variant::of(&constants).constants_of(table) {
-                comment(&mut text, table, constant.key);
-                let value = decimal(*(constant.place)(&mut constants), constant.unit);
-                let _ = writeln!(text, "{} = {value}", constant.key);
-            }
-            for curve in CURVES.iter().filter(|curve| curve.table == table) {
-                for (key, line) in curve_lines(&(curve.place)(&mut constants).curve) {
-                    comment(&mut text, table, key);
-                    text += &line;
-                }
             }
         }
         text
@@ -205,10 +185,9 @@ fn comment(text: &mut String, table: &str, key: &str) {
 
 /// The constant with the name `table.key`.
 fn find(name: &str) -> Result<&'static Constant, String> {
-    let named = |constant: &Constant| format!("{}.{}", constant.table, constant.key);
     let mut all = CONSTANTS.iter();
-    all.find(|constant| named(constant) == name).ok_or_else(|| {
-        let known: Vec<String> = CONSTANTS.iter().map(named).collect();
+    all.find(|constant| constant.name() == name).ok_or_else(|| {
+        let known: Vec<String> = CONSTANTS.iter().map(Constant::name).collect();
         let known = known.iter().map(String::as_str);
         let known: Vec<&str> = known.chain([PUMP_KIND, CYLINDER_NUMBER]).collect();
         format!(

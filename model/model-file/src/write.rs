@@ -7,8 +7,8 @@ use hitch_plant::units::M3_S_PER_LPM;
 use hitch_plant::{AddedEffect, Constants, Dynamics, Model, PumpKind, ValveCurve};
 
 use crate::constants::{
-    CURRENT, CURVES, CYLINDERS, Curve, FLOW, KIND, KINDS, LINKAGE_COLUMNS, M_PER_MM, RAD_PER_DEG,
-    TABLES, Variant,
+    CURRENT, CURVES, CYLINDERS, FLOW, KIND, KINDS, LINKAGE_COLUMNS, M_PER_MM, RAD_PER_DEG, TABLES,
+    Variant,
 };
 use crate::quoted::quoted;
 use crate::round_trip::decimal;
@@ -16,27 +16,19 @@ use crate::terms;
 
 /// The text of a complete model file. Writing to a string cannot fail, so the results are ignored.
 pub fn model(model: &Model) -> String {
-    let mut constants = model.constants().clone();
-    let dynamics = match constants.dynamics {
-        Dynamics::Steady => "steady",
-        Dynamics::Dynamic => "dynamic",
-    };
+    let constants = model.constants().clone();
+    let dynamics = dynamics_name(constants.dynamics);
     let mut text = format!(
         "format = 1\nname = {}\ndynamics = \"{dynamics}\"\n",
         quoted(&model.name)
     );
     for table in TABLES {
         let _ = write!(text, "\n[{table}]\n");
-        for (_, line) in variant_lines(&constants, table, false) {
-            text += &line;
-        }
-        for constant in Variant::of(&constants).constants_of(table) {
-            let value = decimal(*(constant.place)(&mut constants), constant.unit);
-            let _ = writeln!(text, "{} = {value}", constant.key);
-        }
-        for curve in CURVES.iter().filter(|curve| curve.table == table) {
-            write_curve(&mut text, curve, &mut constants);
-        }
+        text.extend(
+            table_lines(&constants, table, false)
+                .into_iter()
+                .map(|(_, line)| line),
+        );
     }
     for term in model.terms.iter().filter_map(|term| TermEffect::of(*term)) {
         terms::write(&mut text, term);
@@ -47,12 +39,40 @@ pub fn model(model: &Model) -> String {
     text
 }
 
+/// Name of the dynamics in a model file.
+pub fn dynamics_name(dynamics: Dynamics) -> &'static str {
+    match dynamics {
+        Dynamics::Steady => "steady",
+        Dynamics::Dynamic => "dynamic",
+    }
+}
+
+/// Name of the kind of a pump in a model file.
+pub fn kind_name(kind: PumpKind) -> &'static str {
+    let mut kinds = KINDS.iter();
+    let named = kinds.find(|(_, known)| *known == kind);
+    named.map_or("", |(written, _)| written)
+}
+
+/// The lines of a table, each with its key; those that choose a variant with the default only if `all`.
+pub fn table_lines(constants: &Constants, table: &str, all: bool) -> Vec<(&'static str, String)> {
+    let mut lines = variant_lines(constants, table, all);
+    let mut constants = constants.clone();
+    for constant in Variant::of(&constants).constants_of(table) {
+        let value = decimal(*(constant.place)(&mut constants), constant.unit);
+        lines.push((constant.key, format!("{} = {value}\n", constant.key)));
+    }
+    for curve in CURVES.iter().filter(|curve| curve.table == table) {
+        lines.extend(curve_lines(&(curve.place)(&mut constants).curve));
+    }
+    lines
+}
+
 /// The lines of a table that choose a variant of the machine, each with its key; those with the default only if `all`.
-pub fn variant_lines(constants: &Constants, table: &str, all: bool) -> Vec<(&'static str, String)> {
+fn variant_lines(constants: &Constants, table: &str, all: bool) -> Vec<(&'static str, String)> {
     match (table, &constants.linkage_table) {
         ("pump", _) if all || constants.pump.kind != PumpKind::FixedDisplacement => {
-            let kind = KINDS.iter().find(|(_, kind)| *kind == constants.pump.kind);
-            let kind = kind.map_or("", |(written, _)| written);
+            let kind = kind_name(constants.pump.kind);
             vec![(KIND, format!("{KIND} = \"{kind}\"\n"))]
         }
         ("cylinder", _) if all || constants.cylinder.count != 1 => {
@@ -74,14 +94,8 @@ pub fn variant_lines(constants: &Constants, table: &str, all: bool) -> Vec<(&'st
     }
 }
 
-fn write_curve(text: &mut String, curve: &Curve, constants: &mut Constants) {
-    for (_, line) in curve_lines(&(curve.place)(constants).curve) {
-        *text += &line;
-    }
-}
-
 /// The two lines of a flow curve, each with its key.
-pub fn curve_lines(curve: &ValveCurve) -> [(&'static str, String); 2] {
+fn curve_lines(curve: &ValveCurve) -> [(&'static str, String); 2] {
     [
         (CURRENT, list(curve.currents_a(), 1.0)),
         (FLOW, list(curve.flows_m3_s(), M3_S_PER_LPM)),

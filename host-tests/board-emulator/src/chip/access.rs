@@ -20,12 +20,7 @@ impl Chip {
             self.registers.modify(eccr, 0x7_FFFF, flags);
             self.raise_if_pending();
         }
-        let shifted = word >> (8 * (offset % 4));
-        match size {
-            1 => shifted & 0xFF,
-            2 => shifted & 0xFFFF,
-            _ => shifted,
-        }
+        part_of(word, offset, size)
     }
 
     fn read_port(&self, base: u32, offset: u32) -> u32 {
@@ -164,10 +159,10 @@ impl Chip {
             return;
         }
         if page == places.flash {
-            let effect = self
+            let wrong = self
                 .flash
                 .write_register(offset, value, &mut self.registers, now_ns);
-            self.take(effect);
+            self.violations.extend(wrong);
             if offset == ECCR && self.part == Part::Stm32g474 {
                 // Writing ones clears the flags.
                 self.registers.set(address, before & !(value & 0xC000_0000));
@@ -247,6 +242,11 @@ impl Chip {
     }
 }
 
+/// The bytes of a word that a read of `size` bytes at an address gives.
+fn part_of(word: u32, address: u32, size: u32) -> u32 {
+    word >> (8 * (address % 4)) & (u32::MAX >> (32 - 8 * size))
+}
+
 impl Bus for Chip {
     fn read(&mut self, address: u32, size: u32) -> u32 {
         let (data, bytes) = self.part.data();
@@ -257,22 +257,17 @@ impl Bus for Chip {
             Some(stuck) => self.read_stuck(stuck, address),
             None => self.read_word(address & !3),
         };
-        let word = word >> (8 * (address % 4));
-        match size {
-            1 => word & 0xFF,
-            2 => word & 0xFFFF,
-            _ => word,
-        }
+        part_of(word, address, size)
     }
 
     fn write(&mut self, address: u32, size: u32, value: u32) {
         let (data, bytes) = self.part.data();
         if (data..data + bytes).contains(&address) {
             let offset = address - data;
-            let effect = self
+            let wrong = self
                 .flash
                 .write(offset, size, value, &mut self.registers, self.now_ns);
-            self.take(effect);
+            self.violations.extend(wrong);
         } else if self.stuck_at(address).is_some() {
             let at = (address & 0xFFF) as usize;
             let bytes = value.to_le_bytes();

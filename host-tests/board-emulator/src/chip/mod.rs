@@ -13,9 +13,9 @@ use crate::clocks::Clocks;
 use crate::conditions::Conditions;
 use crate::counters::{Counter, SlowClockCapture};
 use crate::enable_line::ENABLE;
-use crate::flash::{Contents, Effect, Flash};
+use crate::flash::{Contents, Flash};
 use crate::part::{DBGMCU, Part, Pin, Port, TIM2};
-use crate::pwm::{MOE, Pwm};
+use crate::pwm::Pwm;
 use crate::registers::Registers;
 use crate::watchdog::Watchdog;
 
@@ -203,12 +203,7 @@ impl Chip {
     }
 
     const fn port(&self, port: Port) -> u32 {
-        let base = self.part.addresses().gpio;
-        match port {
-            Port::A => base,
-            Port::B => base + 0x400,
-            Port::C => base + 0x800,
-        }
+        self.part.addresses().gpio + 0x400 * port as u32
     }
 
     /// Other nodes send these frames, one after the other.
@@ -249,14 +244,19 @@ impl Chip {
         self.schedule();
     }
 
+    /// Whether a debugger that halts the processor stops TIM1 and the watchdog.
+    #[must_use]
+    pub fn debug_stops(&self) -> [bool; 2] {
+        let timer = match self.part {
+            Part::Stm32f405 => (0x0C, 0),
+            Part::Stm32g474 => (0x10, 11),
+        };
+        [timer, (0x08, 12)].map(|(offset, bit)| self.registers.bit(DBGMCU + offset, bit))
+    }
+
     /// The processor is halted by a debugger, or goes on.
     pub fn halt(&mut self, halted: bool) {
-        let (timer, watchdog) = match self.part {
-            Part::Stm32f405 => ((0x0C, 0), (0x08, 12)),
-            Part::Stm32g474 => ((0x10, 11), (0x08, 12)),
-        };
-        let set = |(offset, bit): (u32, u32)| self.registers.bit(DBGMCU + offset, bit);
-        let (timer, watchdog) = (set(timer), set(watchdog));
+        let [timer, watchdog] = self.debug_stops();
         if timer {
             self.pwm.halt(halted);
         }
@@ -359,21 +359,6 @@ impl Chip {
         if (self.clocks.security_flag() || damaged) && !self.in_exception && self.stop.is_none() {
             self.stop = Some(Stop::NonMaskable);
         }
-    }
-
-    fn take(&mut self, effect: Effect) {
-        match effect {
-            Effect::None => {}
-            Effect::Violation(what) => {
-                self.violations.insert(what);
-            }
-        }
-    }
-
-    /// True while the pulse-width outputs are enabled.
-    #[must_use]
-    pub fn outputs_enabled(&self) -> bool {
-        self.registers.bit(self.part.addresses().tim1 + 0x44, MOE)
     }
 }
 

@@ -11,8 +11,7 @@ use super::setup::Setup;
 
 /// Thrown off the bus by errors, the controller comes back by itself, and a trouble code reports it.
 pub fn bus_off(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     rig.pick_up()?;
     let before = rig.said.len();
     ensure!(before > 10, "only {before} frames in the first second");
@@ -45,10 +44,9 @@ pub fn bus_off(setup: &Setup) -> Result<String> {
 /// The shortest frames, one after the other: no pulse of a move differs from those on a quiet bus, and no frame is lost,
 /// since a move changes no flash. Then the controller loses one frame, and a trouble code reports it.
 pub fn flooded(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let mut angles = Vec::new();
     for floods in [false, true] {
-        let mut rig = Rig::typical(setup, &model)?;
+        let mut rig = Rig::typical(setup)?;
         rig.pick_up()?;
         rig.bench
             .operator

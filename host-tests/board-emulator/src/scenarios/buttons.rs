@@ -29,8 +29,7 @@ fn press(rig: &mut Rig<'_>, up: bool) -> Result<f64> {
 
 /// Held for ever, a button moves the hitch by its longest travel, and by no more until it is released and pressed again.
 pub fn longest_travel(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     rig.run(READY_MS)?;
     let mut furthest_deg: f64 = 0.0;
     for up in [true, false, true] {
@@ -55,7 +54,6 @@ type ContactFault<'a> = (&'a str, usize, &'a [(Contact, bool)], Trouble);
 
 /// Contacts that say nothing of a press: no coil is driven, and a trouble code says why.
 pub fn contacts(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let closed_at_power_up: &[(Contact, bool)] =
         &[(Contact::Up, true), (Contact::UpReleased, false)];
     let cases: [ContactFault<'_>; 4] = [
@@ -85,7 +83,7 @@ pub fn contacts(setup: &Setup) -> Result<String> {
         ),
     ];
     for (what, at_ms, contacts, trouble) in cases {
-        let mut rig = Rig::typical(setup, &model)?;
+        let mut rig = Rig::typical(setup)?;
         rig.run(at_ms)?;
         for &(contact, closed) in contacts {
             rig.bench.operator.apply(Order::Contact(contact, closed));

@@ -2,7 +2,6 @@
 
 use anyhow::{Result, ensure};
 use hitch_ecu::{AdcCode, BoardScaling, Contact, Contacts};
-use hitch_plant::Model;
 use hitch_protocols::j1939::Trouble;
 use hitch_workbench::ecu::Order;
 
@@ -81,8 +80,8 @@ fn run(rig: &mut Rig<'_>, wires: &mut Wires, milliseconds: usize) -> Result<Flas
 
 /// A desk that is powered up: the potentiometer is turned up and down in the transport lock, and nothing is lit. Then field
 /// mode is closed.
-fn powered_up<'m>(setup: &Setup, model: &'m Model, filtered: bool) -> Result<(Rig<'m>, Wires)> {
-    let mut rig = Rig::typical(setup, model)?;
+fn powered_up(setup: &Setup, filtered: bool) -> Result<(Rig<'_>, Wires)> {
+    let mut rig = Rig::typical(setup)?;
     let mut wires = Wires {
         currents: [0.0; 2],
         filtered,
@@ -114,8 +113,8 @@ fn turn(
 }
 
 /// No current flows: an LED is lit until row 12 trips, and its code is reported. Returns the longest flash, ms.
-fn without_current(setup: &Setup, model: &Model) -> Result<usize> {
-    let (mut rig, mut wires) = powered_up(setup, model, false)?;
+fn without_current(setup: &Setup) -> Result<usize> {
+    let (mut rig, mut wires) = powered_up(setup, false)?;
     let mut longest_ms = 0;
     for lever_deg in [115.0, 65.0] {
         let flashes = turn(&mut rig, &mut wires, lever_deg, TURNED_MS)?;
@@ -137,8 +136,8 @@ fn without_current(setup: &Setup, model: &Model) -> Result<usize> {
 
 /// With the filters the coil counts as connected. The lift LED is lit for longer, until the angle that stands still is a fault.
 /// Returns its longest flash, ms.
-fn with_filters(setup: &Setup, model: &Model) -> Result<usize> {
-    let (mut rig, mut wires) = powered_up(setup, model, true)?;
+fn with_filters(setup: &Setup) -> Result<usize> {
+    let (mut rig, mut wires) = powered_up(setup, true)?;
     let [lift, _] = turn(&mut rig, &mut wires, 115.0, TURNED_MS)?;
     let longest_ms = lift.into_iter().fold(0, usize::max);
     ensure!(
@@ -158,9 +157,8 @@ fn with_filters(setup: &Setup, model: &Model) -> Result<usize> {
 
 /// Steps 1 to 3 of the bring-up.
 pub fn bring_up(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let without_ms = without_current(setup, &model)?;
-    let with_ms = with_filters(setup, &model)?;
+    let without_ms = without_current(setup)?;
+    let with_ms = with_filters(setup)?;
     Ok(format!(
         "an LED is lit for up to {without_ms} ms without current, and for {with_ms} ms with the filters"
     ))

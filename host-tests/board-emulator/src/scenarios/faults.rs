@@ -1,12 +1,12 @@
 //! Each electrical fault of the safety table, with its reaction time at the pin.
 
 use anyhow::{Context, Result, ensure};
-use hitch_ecu::{AdcCode, Contacts};
+use hitch_ecu::{AdcCode, Samples};
 use hitch_workbench::ecu::Order;
 
 use super::rig::Rig;
 use super::setup::Setup;
-use crate::ENABLE_READ_BACK;
+use crate::Conditions;
 
 /// A fault of wires, sensors and coils.
 #[derive(Clone, Copy)]
@@ -21,11 +21,37 @@ pub struct Fault {
     /// Whether only a restart clears it.
     pub until_restart: bool,
     /// Its effect on the samples, in the step of this number.
-    pub inject: fn(&mut Contacts, usize),
+    pub inject: fn(&mut Samples, usize),
+}
+
+impl Fault {
+    /// A fault that shows in any state, and ends with its cause.
+    const fn new(name: &'static str, most_ms: f64, inject: fn(&mut Samples, usize)) -> Self {
+        Self {
+            name,
+            most_ms,
+            always_shows: true,
+            until_restart: false,
+            inject,
+        }
+    }
+
+    /// The same, which does not show in every state.
+    const fn at_times(self) -> Self {
+        Self {
+            always_shows: false,
+            ..self
+        }
+    }
 }
 
 const fn code(code: u16) -> AdcCode {
     AdcCode::new(code)
+}
+
+/// A code that is higher by some counts.
+const fn above(of: AdcCode, counts: u16) -> AdcCode {
+    code(of.get() + counts)
 }
 
 /// Ends of the converters' range: a short to ground, and one to the supply.
@@ -33,145 +59,41 @@ const LOW: AdcCode = code(0);
 const HIGH: AdcCode = code(4095);
 
 /// The faults.
+#[rustfmt::skip]
 pub const FAULTS: [Fault; 17] = [
+    Fault::new("supply below 8 V", 12.0, |samples, _| samples.supply = code(7_400 / 6)),
+    Fault::new("supply above 16.8 V", 12.0, |samples, _| samples.supply = code(18_000 / 6)),
+    Fault::new("supply alternates each millisecond", 12.0, |samples, step| {
+        if step % 2 == 0 {
+            samples.supply = code(7_000 / 6);
+        }
+    }),
+    Fault::new("lever shorted to ground", 7.0, |samples, _| samples.lever = LOW),
+    Fault::new("lever shorted to its supply", 7.0, |samples, _| samples.lever = HIGH),
+    Fault::new("angle shorted to ground", 7.0, |samples, _| samples.rocker_angle = LOW),
+    Fault::new("angle shorted to its supply", 7.0, |samples, _| samples.rocker_angle = HIGH),
+    Fault::new("second angle track shorted to ground", 7.0, |samples, _| samples.second_angle = LOW),
+    Fault::new("second angle track 4 degrees off", 22.0, |samples, _| {
+        samples.second_angle = above(samples.second_angle, 119);
+    }),
+    Fault::new("both angle tracks lost", 7.0, |samples, _| {
+        [samples.rocker_angle, samples.second_angle] = [LOW; 2];
+    }),
+    Fault::new("angle jumps by 8 degrees", 7.0, |samples, _| {
+        samples.rocker_angle = above(samples.rocker_angle, 238);
+    }).at_times(),
+    Fault::new("lift coil open", 42.0, |samples, _| samples.lift_current = LOW).at_times(),
     Fault {
-        name: "supply below 8 V",
-        most_ms: 12.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.supply = code(7_400 / 6),
-    },
-    Fault {
-        name: "supply above 16.8 V",
-        most_ms: 12.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.supply = code(18_000 / 6),
-    },
-    Fault {
-        name: "supply alternates each millisecond",
-        most_ms: 12.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, step| {
-            if step % 2 == 0 {
-                contacts.samples.supply = code(7_000 / 6);
-            }
-        },
-    },
-    Fault {
-        name: "lever shorted to ground",
-        most_ms: 7.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.lever = LOW,
-    },
-    Fault {
-        name: "lever shorted to its supply",
-        most_ms: 7.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.lever = HIGH,
-    },
-    Fault {
-        name: "angle shorted to ground",
-        most_ms: 7.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.rocker_angle = LOW,
-    },
-    Fault {
-        name: "angle shorted to its supply",
-        most_ms: 7.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.rocker_angle = HIGH,
-    },
-    Fault {
-        name: "second angle track shorted to ground",
-        most_ms: 7.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.second_angle = LOW,
-    },
-    Fault {
-        name: "second angle track 4 degrees off",
-        most_ms: 22.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| {
-            let off = contacts.samples.second_angle.get() + 119;
-            contacts.samples.second_angle = code(off);
-        },
-    },
-    Fault {
-        name: "both angle tracks lost",
-        most_ms: 7.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| {
-            contacts.samples.rocker_angle = LOW;
-            contacts.samples.second_angle = LOW;
-        },
-    },
-    Fault {
-        name: "angle jumps by 8 degrees",
-        most_ms: 7.0,
-        always_shows: false,
-        until_restart: false,
-        inject: |contacts, _| {
-            let jumped = contacts.samples.rocker_angle.get() + 238;
-            contacts.samples.rocker_angle = code(jumped);
-        },
-    },
-    Fault {
-        name: "lift coil open",
-        most_ms: 42.0,
-        always_shows: false,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.lift_current = LOW,
-    },
-    Fault {
-        name: "lift coil shorted",
-        most_ms: 12.0,
-        always_shows: false,
         until_restart: true,
-        inject: |contacts, _| contacts.samples.lift_current = HIGH,
+        ..Fault::new("lift coil shorted", 12.0, |samples, _| samples.lift_current = HIGH).at_times()
     },
-    Fault {
-        name: "sensor supply at 4 V",
-        most_ms: 22.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| {
-            // Behind a divider of 2.
-            contacts.samples.sensor_supply = code(2_482);
-        },
-    },
-    Fault {
-        name: "sensor supply shorted to ground",
-        most_ms: 22.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.sensor_supply = LOW,
-    },
-    Fault {
-        name: "converter reference 8 % low",
-        most_ms: 22.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| {
-            let risen = u32::from(contacts.samples.reference.get()) * 100 / 92;
-            contacts.samples.reference = code(risen as u16);
-        },
-    },
-    Fault {
-        name: "converter reference lost",
-        most_ms: 22.0,
-        always_shows: true,
-        until_restart: false,
-        inject: |contacts, _| contacts.samples.reference = HIGH,
-    },
+    // Behind a divider of 2.
+    Fault::new("sensor supply at 4 V", 22.0, |samples, _| samples.sensor_supply = code(2_482)),
+    Fault::new("sensor supply shorted to ground", 22.0, |samples, _| samples.sensor_supply = LOW),
+    Fault::new("converter reference 8 % low", 22.0, |samples, _| {
+        samples.reference = code((u32::from(samples.reference.get()) * 100 / 92) as u16);
+    }),
+    Fault::new("converter reference lost", 22.0, |samples, _| samples.reference = HIGH),
 ];
 
 /// Injects each fault into a hitch that is lifted at full speed.
@@ -194,23 +116,16 @@ pub fn electrical_faults(setup: &Setup) -> Result<String> {
     Ok(table.join("\n"))
 }
 
-fn react(setup: &Setup, inject: fn(&mut Contacts, usize)) -> Result<f64> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
-    rig.pick_up()?;
-    rig.lever(125.0, 700)?;
-    ensure!(rig.is_driven(), "the hitch isn't lifted");
+fn react(setup: &Setup, inject: fn(&mut Samples, usize)) -> Result<f64> {
+    let mut rig = Rig::lifted(setup, Conditions::typical(setup.layout))?;
     let fault_ns = rig.now_ns();
     let mut step = 0;
     let took_ms = rig.off_after_ms(fault_ns, 300, |contacts| {
-        inject(contacts, step);
+        inject(&mut contacts.samples, step);
         step += 1;
     })?;
     // Nothing comes back while the fault is there.
-    for step in 0..200 {
-        rig.tick_with(|contacts| inject(contacts, step))?;
-        ensure!(!rig.is_driven(), "a coil is driven again {step} ms later");
-    }
+    rig.stays_off(200, |contacts, step| inject(&mut contacts.samples, step))?;
     ensure!(rig.board.resets.is_empty(), "the ECU was reset");
     Ok(took_ms)
 }
@@ -220,12 +135,9 @@ fn react(setup: &Setup, inject: fn(&mut Contacts, usize)) -> Result<f64> {
 pub fn frozen_track(setup: &Setup) -> Result<String> {
     /// 2 degrees at 40 deg/s or more, the row's time, and two milliseconds.
     const MOST_MS: f64 = 60.0;
-    let model = hitch_model_file::nominal();
     let mut worst_ms: f64 = 0.0;
     for trembles in [false, true] {
-        let mut rig = Rig::typical(setup, &model)?;
-        rig.pick_up()?;
-        rig.lever(125.0, 700)?;
+        let mut rig = Rig::lifted(setup, Conditions::typical(setup.layout))?;
         let mut random = fastrand::Rng::with_seed(17);
         let mut frozen = None;
         let fault_ns = rig.now_ns();
@@ -245,39 +157,22 @@ pub fn frozen_track(setup: &Setup) -> Result<String> {
 
 /// The enable line's read-back is stuck high or low from power-up on, or goes low in the middle of a move.
 pub fn enable_line(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     for stuck in [true, false] {
-        let mut rig = Rig::typical(setup, &model)?;
-        rig.board
-            .chip()
-            .conditions
-            .levels
-            .insert(ENABLE_READ_BACK, stuck);
+        let mut rig = Rig::typical(setup)?;
+        rig.force_read_back(stuck);
         rig.pick_up()?;
         rig.bench.operator.apply(Order::Lever(110.0));
-        for step in 0..1_000 {
-            rig.tick_with(|_| {})?;
-            ensure!(
-                !rig.is_driven(),
-                "stuck at {stuck}: a coil is driven after {step} ms"
-            );
-        }
+        rig.stays_off(1_000, |_, _| {})
+            .with_context(|| format!("stuck at {stuck}"))?;
         ensure!(
             rig.board.resets.is_empty(),
             "stuck at {stuck}: {:?}",
             rig.board.resets
         );
     }
-    let mut rig = Rig::typical(setup, &model)?;
-    rig.pick_up()?;
-    rig.lever(125.0, 700)?;
-    ensure!(rig.is_driven(), "the hitch isn't lifted");
+    let mut rig = Rig::lifted(setup, Conditions::typical(setup.layout))?;
     let fault_ns = rig.now_ns();
-    rig.board
-        .chip()
-        .conditions
-        .levels
-        .insert(ENABLE_READ_BACK, false);
+    rig.force_read_back(false);
     let took_ms = rig.off_after_ms(fault_ns, 200, |_| {})?;
     ensure!(took_ms <= 8.0, "off after {took_ms} ms");
     Ok(format!(

@@ -130,8 +130,7 @@ fn stays(rig: &mut Rig<'_>, wires: Wires, trouble: Trouble) -> Result<f64> {
 
 /// The selected draft or depth moves the hitch, a broken wire is reported, and the engagement switch lowers.
 pub fn draft_and_depth(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     let wanted_n = 5_400.0;
     let wires = Wires {
         dial: wanted_n / SPAN_N,
@@ -194,8 +193,7 @@ fn engage(rig: &mut Rig<'_>, wires: Wires) -> Result<f64> {
 /// Conversions of the slow channels do not end any more: all their sensors are lost within one check, nothing hangs, and the
 /// lever still moves the hitch.
 pub fn stuck_conversions(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     let wires = Wires {
         dial: 0.07,
         ..Wires::default()

@@ -1,7 +1,6 @@
 //! Mistakes of the first flash: a board with another crystal, and an image that was not finished.
 
 use anyhow::{Context, Result, ensure};
-use hitch_plant::Model;
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::{Id, Pgn, Trouble};
 
@@ -60,30 +59,23 @@ pub fn reported(said: &[Frame]) -> Vec<Trouble> {
     all.filter(|trouble| reports(said, *trouble)).collect()
 }
 
-/// A board whose crystal has `share` of its nominal frequency, with this internal oscillator.
-fn with_oscillators<'m>(
-    setup: &Setup,
-    model: &'m Model,
-    share: f64,
-    internal_hz: f64,
-) -> Result<Rig<'m>> {
+/// Conditions with a crystal that has `share` of its nominal frequency, and this internal oscillator.
+fn oscillators(setup: &Setup, share: f64, internal_hz: f64) -> Conditions {
     let typical = Conditions::typical(setup.layout);
-    let conditions = Conditions {
+    Conditions {
         crystal_hz: share * typical.crystal_hz,
         internal_hz,
         ..typical
-    };
-    Rig::erased(setup, model, conditions)
+    }
 }
 
 /// A sound crystal is used with the slowest and the fastest internal oscillator of the data sheet. Further off than these
 /// can explain, or another crystal altogether: the part runs from its internal oscillator, no coil is driven, and a trouble
 /// code says why.
 pub fn wrong_crystal(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let [slowest_hz, fastest_hz] = setup.layout.part().internal_hz();
     for internal_hz in [slowest_hz, fastest_hz] {
-        let mut rig = with_oscillators(setup, &model, 1.0, internal_hz)?;
+        let mut rig = Rig::erased(setup, oscillators(setup, 1.0, internal_hz))?;
         rig.pick_up()?;
         rig.lever(125.0, 700)?;
         ensure!(
@@ -95,7 +87,7 @@ pub fn wrong_crystal(setup: &Setup) -> Result<String> {
     let (low, high) = (INTERNAL_HZ / fastest_hz, INTERNAL_HZ / slowest_hz);
     let wrong = [low - 0.01, high + 0.01, 0.5, 1.5];
     for share in wrong {
-        let mut rig = with_oscillators(setup, &model, share, INTERNAL_HZ)?;
+        let mut rig = Rig::erased(setup, oscillators(setup, share, INTERNAL_HZ))?;
         is_refused(&mut rig, Trouble::Crystal)
             .with_context(|| format!("{share} of the crystal's frequency"))?;
     }
@@ -108,12 +100,11 @@ pub fn wrong_crystal(setup: &Setup) -> Result<String> {
 
 /// An image without checksum: no coil is driven, and a trouble code says why.
 pub fn unsealed_image(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let unsealed = Setup {
         image: setup.image.unsealed()?,
         ..setup.clone()
     };
-    let mut rig = Rig::typical(&unsealed, &model)?;
+    let mut rig = Rig::typical(&unsealed)?;
     is_refused(&mut rig, Trouble::ImageUnsealed)?;
     Ok("refused and reported".into())
 }

@@ -9,7 +9,7 @@ use hitch_workbench::ecu::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES};
 
 use super::rig::Rig;
 use super::setup::Setup;
-use crate::{Conditions, Contents, Extent, Operation};
+use crate::{Conditions, Contents, Operation};
 
 /// Time after which the ECU has its address, ms.
 const CLAIMED_MS: usize = 600;
@@ -95,8 +95,7 @@ fn entries(rig: &mut Rig<'_>) -> Result<Vec<Operation>> {
 
 /// A fault, restarts, a power cut before and within each operation that stores it, and clearing.
 pub fn fault_history(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     rig.run(CLAIMED_MS)?;
     // Erased flash has no calibration, which is a separate trouble, active at each start.
     ensure!(previous(&mut rig)? == Previous::Nothing, "a new ECU");
@@ -104,7 +103,7 @@ pub fn fault_history(setup: &Setup) -> Result<String> {
         after_power_up(&mut rig, None)? == Previous::Nothing,
         "a second start"
     );
-    let mut contents = rig.board.chip().flash.contents.clone();
+    let contents = rig.board.chip().flash.contents.clone();
     let before = entries(&mut rig)?.len();
     for _ in 0..50 {
         rig.tick_with(lever_off)?;
@@ -116,18 +115,14 @@ pub fn fault_history(setup: &Setup) -> Result<String> {
     rig.run(STORED_MS)?;
     let cleared = after_power_up(&mut rig, None)?;
     ensure!(cleared == Previous::Nothing, "{cleared:?} after DM3");
-    for (number, operation) in operations.iter().enumerate() {
-        let mut half = contents.clone();
-        half.apply(setup.layout.part(), operation, Extent::Half);
-        for (when, state) in [("before", &contents), ("in", &half)] {
-            let found = after_power_up(&mut rig, Some(state))
-                .with_context(|| format!("power cut {when} operation {number}"))?;
-            ensure!(
-                found == Previous::Nothing,
-                "{found:?} after a power cut {when} operation {number}"
-            );
-        }
-        contents.apply(setup.layout.part(), operation, Extent::Whole);
+    let (cuts, contents) = contents.cut_in(setup.layout.part(), &operations);
+    for (when, state) in cuts {
+        let found =
+            after_power_up(&mut rig, Some(&state)).with_context(|| format!("power cut {when}"))?;
+        ensure!(
+            found == Previous::Nothing,
+            "{found:?} after a power cut {when}"
+        );
     }
     let found = after_power_up(&mut rig, Some(&contents))?;
     ensure!(found == Previous::LeverMissing(1), "{found:?} with all");
@@ -201,13 +196,12 @@ fn compacts(setup: &Setup, rig: &mut Rig<'_>, contents: &Contents, all: &[Troubl
 /// Starts with a log that is to be compacted, with all codes and the fastest oscillator of the watchdog; and with a few, cut
 /// before and within each operation.
 pub fn compaction(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let [_, fastest_hz] = setup.layout.part().slow_clock_hz();
     let conditions = Conditions {
         slow_clock_hz: fastest_hz,
         ..Conditions::typical(setup.layout)
     };
-    let mut rig = Rig::erased(setup, &model, conditions)?;
+    let mut rig = Rig::erased(setup, conditions)?;
     compacts(
         setup,
         &mut rig,
@@ -219,15 +213,12 @@ pub fn compaction(setup: &Setup) -> Result<String> {
         Trouble::AngleJumps,
         Trouble::SupplyLow,
     ];
-    let mut contents = nearly_full(setup, &few)?;
+    let contents = nearly_full(setup, &few)?;
     compacts(setup, &mut rig, &contents, &few)?;
     let operations = rig.board.chip().flash.operations.clone();
-    for (number, operation) in operations.iter().enumerate() {
-        let mut half = contents.clone();
-        half.apply(setup.layout.part(), operation, Extent::Half);
-        compacts(setup, &mut rig, &half, &few)
-            .with_context(|| format!("power cut in operation {number}: {operation:?}"))?;
-        contents.apply(setup.layout.part(), operation, Extent::Whole);
+    let (cuts, _) = contents.cut_in(setup.layout.part(), &operations);
+    for (when, state) in cuts.into_iter().skip(1).step_by(2) {
+        compacts(setup, &mut rig, &state, &few).with_context(|| format!("power cut {when}"))?;
     }
     rig.finish()?;
     Ok(format!(

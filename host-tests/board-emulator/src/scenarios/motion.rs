@@ -13,8 +13,7 @@ const NEAR_DEG: f64 = 1.0;
 
 /// Lifts, holds and lowers; checks pulses, instructions and initialisation.
 pub fn lift_hold_lower(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     rig.pick_up()?;
     let chip = rig.board.chip();
     (chip.watchdog.longest_ns, chip.instructions_to_drive) = (0.0, 0);

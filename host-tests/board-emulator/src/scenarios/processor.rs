@@ -1,52 +1,27 @@
 //! Faults of the processor and its clock.
 
-use anyhow::{Result, ensure};
-use hitch_plant::Model;
+use anyhow::{Context as _, Result, ensure};
 
 use super::rig::{READY_MS, Rig};
 use super::setup::Setup;
-use crate::{Board, Conditions, Part, Stop};
+use crate::{Board, Conditions, Part};
 
 /// Time within which the watchdog resets a dead program at the slowest oscillator, and the pins are low, ms.
 const WATCHDOG_MS: f64 = 20.0;
 
 /// A hitch that is lifted at full speed, in typical conditions.
-fn lifted<'m>(setup: &Setup, model: &'m Model) -> Result<Rig<'m>> {
-    lifted_in(setup, model, Conditions::typical(setup.layout))
-}
-
-/// A hitch that is lifted at full speed.
-fn lifted_in<'m>(setup: &Setup, model: &'m Model, conditions: Conditions) -> Result<Rig<'m>> {
-    let mut rig = Rig::erased(setup, model, conditions)?;
-    rig.pick_up()?;
-    rig.lever(125.0, 700)?;
-    ensure!(rig.is_driven(), "the hitch isn't lifted");
-    Ok(rig)
-}
-
-/// After a reset no coil is driven until the operator has picked the hitch up, and the ECU runs.
-fn stays_off(rig: &mut Rig<'_>, milliseconds: usize) -> Result<()> {
-    for step in 0..milliseconds {
-        rig.tick_with(|_| {})?;
-        ensure!(!rig.is_driven(), "a coil is driven again {step} ms later");
-    }
-    Ok(())
+fn lifted(setup: &Setup) -> Result<Rig<'_>> {
+    Rig::lifted(setup, Conditions::typical(setup.layout))
 }
 
 /// A failure of a hitch that is lifted, at which hardware cuts the outputs; afterwards the watchdog resets the part.
 fn cut_by_hardware(setup: &Setup, fail: impl FnOnce(&mut Board)) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = lifted(setup, &model)?;
+    /// No program is as fast.
+    const HARDWARE_MS: f64 = 0.01;
+    let mut rig = lifted(setup)?;
     let fault_ns = rig.now_ns();
     fail(&mut rig.board);
-    let took_ms = rig.off_after_ms(fault_ns, 60, |_| {})?;
-    ensure!(took_ms < 0.01, "off after {took_ms} ms: not by hardware");
-    stays_off(&mut rig, READY_MS + 400)?;
-    ensure!(
-        rig.board.resets == [Stop::Watchdog],
-        "{:?}",
-        rig.board.resets
-    );
+    let took_ms = rig.restarts(fault_ns, HARDWARE_MS)?;
     rig.finish_after_resets()?;
     Ok(format!(
         "pins low after {took_ms:.3} ms, reset, and ready again"
@@ -65,28 +40,18 @@ pub fn debugger_halt(setup: &Setup) -> Result<String> {
 
 /// The converters stop, so the program waits for ever: the watchdog resets the part.
 pub fn stuck_program(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let mut worst_ms: f64 = 0.0;
     for slow_clock_hz in setup.layout.part().slow_clock_hz() {
         let conditions = Conditions {
             slow_clock_hz,
             ..Conditions::typical(setup.layout)
         };
-        let mut rig = lifted_in(setup, &model, conditions)?;
+        let mut rig = Rig::lifted(setup, conditions)?;
         let fault_ns = rig.now_ns();
         rig.board.chip().pwm.next_update_ns = f64::INFINITY;
-        let took_ms = rig.off_after_ms(fault_ns, 60, |_| {})?;
-        ensure!(
-            took_ms < WATCHDOG_MS,
-            "off after {took_ms} ms at {slow_clock_hz} Hz"
-        );
+        let took_ms = rig.restarts(fault_ns, WATCHDOG_MS);
+        let took_ms = took_ms.with_context(|| format!("{slow_clock_hz} Hz"))?;
         worst_ms = worst_ms.max(took_ms);
-        stays_off(&mut rig, READY_MS + 400)?;
-        ensure!(
-            rig.board.resets == [Stop::Watchdog],
-            "{:?}",
-            rig.board.resets
-        );
         rig.finish_after_resets()?;
     }
     Ok(format!(
@@ -96,18 +61,10 @@ pub fn stuck_program(setup: &Setup) -> Result<String> {
 
 /// The stack runs out of RAM: the write faults, and the coils are off.
 pub fn stack_overflow(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = lifted(setup, &model)?;
+    let mut rig = lifted(setup)?;
     let fault_ns = rig.now_ns();
     rig.board.set_stack_pointer(0x2000_0020);
-    let took_ms = rig.off_after_ms(fault_ns, 60, |_| {})?;
-    ensure!(took_ms < WATCHDOG_MS, "off after {took_ms} ms");
-    stays_off(&mut rig, READY_MS + 400)?;
-    ensure!(
-        rig.board.resets == [Stop::Watchdog],
-        "{:?}",
-        rig.board.resets
-    );
+    let took_ms = rig.restarts(fault_ns, WATCHDOG_MS)?;
     Ok(format!(
         "pins low after {took_ms:.2} ms, reset, and ready again"
     ))
@@ -115,7 +72,6 @@ pub fn stack_overflow(setup: &Setup) -> Result<String> {
 
 /// Bits of the peripherals' set-up flip while the hitch is lifted: the program notices and restarts.
 pub fn flipped_registers(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let places = setup.layout.part().addresses();
     // Injected sequence, and sampling times of the slow channels.
     let (sequence, times) = match setup.layout.part() {
@@ -134,20 +90,13 @@ pub fn flipped_registers(setup: &Setup) -> Result<String> {
     ];
     let mut worst_ms: f64 = 0.0;
     for (name, address, bit) in registers {
-        let mut rig = lifted(setup, &model)?;
+        let mut rig = lifted(setup)?;
         let fault_ns = rig.now_ns();
         let chip = rig.board.chip();
         let flipped = chip.registers.get(address) ^ bit;
         chip.registers.set(address, flipped);
-        let took_ms = rig.off_after_ms(fault_ns, 60, |_| {})?;
-        ensure!(took_ms < WATCHDOG_MS, "{name}: off after {took_ms} ms");
+        let took_ms = rig.restarts(fault_ns, WATCHDOG_MS).context(name)?;
         worst_ms = worst_ms.max(took_ms);
-        stays_off(&mut rig, READY_MS + 400)?;
-        ensure!(
-            rig.board.resets == [Stop::Watchdog],
-            "{name}: {:?}",
-            rig.board.resets
-        );
         rig.finish_after_resets()?;
     }
     Ok(format!(
@@ -158,8 +107,7 @@ pub fn flipped_registers(setup: &Setup) -> Result<String> {
 
 /// A bit of the program flips in flash: it is found within two seconds, and the ECU doesn't come back.
 pub fn flipped_code(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = lifted(setup, &model)?;
+    let mut rig = lifted(setup)?;
     let last = setup
         .image
         .pieces
@@ -188,10 +136,9 @@ pub fn flipped_code(setup: &Setup) -> Result<String> {
 
 /// The main clock runs at a rate that is 30 % off, with all timers on it: only the independent oscillator shows it.
 pub fn wrong_clock(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let mut worst_ms: f64 = 0.0;
     for factor in [0.7, 1.3] {
-        let mut rig = lifted(setup, &model)?;
+        let mut rig = lifted(setup)?;
         let fault_ns = rig.now_ns();
         rig.board.chip().clocks.crystal_hz *= factor;
         rig.board.chip().clocks_changed();
@@ -207,16 +154,12 @@ pub fn wrong_clock(setup: &Setup) -> Result<String> {
 
 /// A bit of RAM is stuck at power-up: the program doesn't start.
 pub fn damaged_ram(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let conditions = Conditions {
         stuck_ram: Some(0x2001_1004),
         ..Conditions::typical(setup.layout)
     };
-    let mut rig = Rig::erased(setup, &model, conditions)?;
-    for step in 0..READY_MS + 400 {
-        rig.tick_with(|_| {})?;
-        ensure!(!rig.is_driven(), "a coil is driven after {step} ms");
-    }
+    let mut rig = Rig::erased(setup, conditions)?;
+    rig.stays_off(READY_MS + 400, |_, _| {})?;
     ensure!(
         rig.board.chip().pwm.updates == 0,
         "the ECU starts with damaged RAM"

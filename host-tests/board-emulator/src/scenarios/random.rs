@@ -28,9 +28,8 @@ const LEAST_DRIVEN: f64 = 0.2;
 pub fn operation(setup: &Setup) -> Result<String> {
     let minutes =
         std::env::var(MINUTES_VARIABLE).map_or(Ok(MINUTES), |text| text.parse::<f64>())?;
-    let model = hitch_model_file::nominal();
     let mut shift = Shift {
-        rig: Rig::typical(setup, &model)?,
+        rig: Rig::typical(setup)?,
         random: fastrand::Rng::with_seed(SEED),
         step: 0,
         driven_ms: 0,
@@ -84,7 +83,7 @@ impl Shift<'_> {
         self.rig.said.clear();
         self.rig.tick_with(|contacts| {
             if let Some((fault, _)) = fault {
-                (fault.inject)(contacts, step as usize);
+                (fault.inject)(&mut contacts.samples, step as usize);
             }
         })?;
         let chip = self.rig.board.chip();

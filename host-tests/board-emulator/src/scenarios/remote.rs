@@ -56,8 +56,7 @@ fn command(rig: &mut Rig<'_>, raw: Option<u8>, milliseconds: usize) -> Result<bo
 
 /// An implement moves the hitch with the operator's consent, and not without.
 pub fn consent(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     rig.pick_up()?;
     rig.run(2_000)?;
     let name: Name = NameFields {

@@ -2,13 +2,12 @@
 
 use anyhow::{Result, ensure};
 use hitch_ecu::Contacts;
-use hitch_plant::Model;
 use hitch_protocols::can::Frame;
 use hitch_workbench::ecu::{Bench, Moment, Order};
 
 use super::setup::Setup;
 use crate::audit::findings;
-use crate::{Board, Conditions, Contents};
+use crate::{Board, Conditions, Contents, ENABLE_READ_BACK, Stop};
 
 /// Time after power-up within which the ECU is ready, ms.
 pub const READY_MS: usize = 250;
@@ -28,41 +27,68 @@ pub struct Rig<'m> {
 }
 
 impl<'m> Rig<'m> {
-    /// A board that is powered up, with the hitch at rest.
-    pub fn new(
-        setup: &Setup,
-        model: &'m Model,
-        contents: Contents,
-        conditions: Conditions,
-    ) -> Result<Self> {
+    /// A board with erased flash that is powered up, with the hitch at rest.
+    pub fn erased(setup: &'m Setup, conditions: Conditions) -> Result<Self> {
         let board = Board::new(
             &setup.library,
             setup.layout,
             &setup.image,
-            contents,
+            Contents::erased(setup.layout.part()),
             conditions,
         )?;
         Ok(Self {
             board,
-            bench: Bench::new(model, 150.0, 40.0, START_DEG, 1),
+            bench: Bench::new(&setup.model, 150.0, 40.0, START_DEG, 1),
             said: Vec::new(),
             was_driven: false,
         })
     }
 
-    /// The same with erased flash.
-    pub fn erased(setup: &Setup, model: &'m Model, conditions: Conditions) -> Result<Self> {
-        Self::new(
-            setup,
-            model,
-            Contents::erased(setup.layout.part()),
-            conditions,
-        )
+    /// The same in typical conditions.
+    pub fn typical(setup: &'m Setup) -> Result<Self> {
+        Self::erased(setup, Conditions::typical(setup.layout))
     }
 
-    /// The same with erased flash and typical conditions.
-    pub fn typical(setup: &Setup, model: &'m Model) -> Result<Self> {
-        Self::erased(setup, model, Conditions::typical(setup.layout))
+    /// A hitch that is lifted at full speed.
+    pub fn lifted(setup: &'m Setup, conditions: Conditions) -> Result<Self> {
+        let mut rig = Self::erased(setup, conditions)?;
+        rig.pick_up()?;
+        rig.lever(125.0, 700)?;
+        ensure!(rig.is_driven(), "the hitch isn't lifted");
+        Ok(rig)
+    }
+
+    /// Some milliseconds in which no coil may be driven; `tamper` knows their number.
+    pub fn stays_off(
+        &mut self,
+        milliseconds: usize,
+        mut tamper: impl FnMut(&mut Contacts, usize),
+    ) -> Result<()> {
+        for step in 0..milliseconds {
+            self.tick_with(|contacts| tamper(contacts, step))?;
+            ensure!(!self.is_driven(), "a coil is driven {step} ms later");
+        }
+        Ok(())
+    }
+
+    /// Forces the enable line's read-back to a level.
+    pub fn force_read_back(&mut self, level: bool) {
+        let levels = &mut self.board.chip().conditions.levels;
+        levels.insert(ENABLE_READ_BACK, level);
+    }
+
+    /// After a fault at `fault_ns` the pins are low in time, and nothing drives a coil while the watchdog resets the part
+    /// and the ECU starts again. Returns how long the pins took, ms.
+    pub fn restarts(&mut self, fault_ns: f64, most_ms: f64) -> Result<f64> {
+        let took_ms = self.off_after_ms(fault_ns, 60, |_| {})?;
+        ensure!(
+            took_ms < most_ms,
+            "off after {took_ms} ms, {most_ms} ms allowed"
+        );
+        self.stays_off(READY_MS + 400, |_, _| {})?;
+        let resets = &self.board.resets;
+        ensure!(*resets == [Stop::Watchdog], "{resets:?}");
+        Ok(took_ms)
     }
 
     /// A millisecond in which `tamper` changes the signals of sensors and wires.

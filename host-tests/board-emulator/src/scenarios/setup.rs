@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
+use hitch_plant::Model;
 
 use crate::image::Image;
 use crate::layout::Layout;
 
-/// The image of a board, and the emulator's library.
+/// The image of a board, the emulator's library, and the plant.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// Shared library of the CPU emulator.
@@ -16,6 +17,8 @@ pub struct Setup {
     pub layout: Layout,
     /// Its image.
     pub image: Image,
+    /// The plant.
+    pub model: Model,
 }
 
 /// A scenario; an error describes the failure.

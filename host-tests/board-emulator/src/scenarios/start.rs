@@ -1,6 +1,6 @@
 //! Power-up.
 
-use anyhow::{Result, ensure};
+use anyhow::{Context as _, Result, ensure};
 
 use super::rig::{READY_MS, Rig};
 use super::setup::Setup;
@@ -8,8 +8,7 @@ use crate::{Conditions, Operation, Stop};
 
 /// Frames of the address claim and the status show that the application runs.
 fn starts(setup: &Setup, conditions: Conditions) -> Result<f64> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::erased(setup, &model, conditions)?;
+    let mut rig = Rig::erased(setup, conditions)?;
     let mut ready_ms = None;
     for millisecond in 0..READY_MS + 300 {
         rig.tick_with(|_| {})?;
@@ -38,8 +37,7 @@ pub fn boot(setup: &Setup) -> Result<String> {
 
 /// A part with the manufacturer's option bytes and nothing in flash but the image.
 pub fn factory_fresh(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     let before = rig.board.chip().flash.options;
     rig.run(READY_MS + 300)?;
     rig.finish()?;
@@ -76,16 +74,13 @@ pub fn slow_crystal(setup: &Setup) -> Result<String> {
 
 /// A crystal that never starts: the watchdog resets the part again and again, and no coil is driven.
 pub fn dead_crystal(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
     let conditions = Conditions {
         crystal_start_ns: None,
         ..Conditions::typical(setup.layout)
     };
-    let mut rig = Rig::erased(setup, &model, conditions)?;
-    for _ in 0..1_500 {
-        rig.tick_with(|_| {})?;
-        ensure!(!rig.is_driven(), "a coil is driven without a crystal");
-    }
+    let mut rig = Rig::erased(setup, conditions)?;
+    rig.stays_off(1_500, |_, _| {})
+        .context("without a crystal")?;
     let resets = rig.board.resets.len();
     ensure!(
         resets >= 2

@@ -6,7 +6,7 @@ use hitch_ecu::Contact;
 use super::rig::{READY_MS, Rig};
 use super::setup::Setup;
 use crate::ecu_tool;
-use crate::{Board, Contents, Extent, Snapshot};
+use crate::{Board, Contents, Snapshot};
 
 /// The parameter that is stored, with two values that nothing else in RAM has. The second one is stricter: the board has
 /// no key.
@@ -45,8 +45,7 @@ fn in_use(board: &mut Board) -> Result<Vec<i32>> {
 
 /// Stores twice, and reads back after power was off.
 pub fn store_and_read_back(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     for value in [FIRST, SECOND] {
         store(&mut rig, value)?;
         rig.board.cycle_power()?;
@@ -65,8 +64,7 @@ pub fn store_and_read_back(setup: &Setup) -> Result<String> {
 
 /// Cuts power before, within and after each erasing and programming of a second calibration.
 pub fn power_cuts(setup: &Setup) -> Result<String> {
-    let model = hitch_model_file::nominal();
-    let mut rig = Rig::typical(setup, &model)?;
+    let mut rig = Rig::typical(setup)?;
     store(&mut rig, FIRST)?;
     rig.board.cycle_power()?;
     let before = rig.board.chip().flash.contents.clone();
@@ -74,17 +72,12 @@ pub fn power_cuts(setup: &Setup) -> Result<String> {
     rig.finish()?;
     let operations = rig.board.chip().flash.operations.clone();
     let start = before_loading(&mut rig.board)?;
-    let mut contents = before;
+    let (cuts, contents) = before.cut_in(setup.layout.part(), &operations);
     let mut news = 0;
-    for (number, operation) in operations.iter().enumerate() {
-        let mut half = contents.clone();
-        half.apply(setup.layout.part(), operation, Extent::Half);
-        for (when, state) in [("before", &contents), ("in", &half)] {
-            let new = loads_new(&mut rig.board, &start, state)
-                .with_context(|| format!("power cut {when} operation {number}"))?;
-            news += usize::from(new);
-        }
-        contents.apply(setup.layout.part(), operation, Extent::Whole);
+    for (when, state) in cuts {
+        let new = loads_new(&mut rig.board, &start, &state)
+            .with_context(|| format!("power cut {when}"))?;
+        news += usize::from(new);
     }
     ensure!(
         loads_new(&mut rig.board, &start, &contents)?,

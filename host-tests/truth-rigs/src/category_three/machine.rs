@@ -1,11 +1,8 @@
 //! Values of the machine: those of its data sheets, and those that differ from them.
 
-/// Pascal in a bar.
-pub const BAR: f64 = 1e5;
-/// m3/s in a litre per minute.
-pub const LPM: f64 = 1e-3 / 60.0;
-/// Standard gravity, m/s2.
-pub const GRAVITY_M_S2: f64 = 9.806_65;
+use crate::polyline::value_at;
+
+pub use crate::second_rig::data_sheet::{BAR, GRAVITY_M_S2, LPM};
 
 /// Bore of each of the two cylinders, mm.
 pub const BORE_MM: f64 = 90.0;
@@ -78,18 +75,7 @@ pub const GPM: f64 = 3.785_411_784e-3 / 60.0;
 /// Flow of a valve at its reference drop, m3/s, at a current, A.
 #[must_use]
 pub fn flow_m3_s(curve: &[(f64, f64)], current_a: f64) -> f64 {
-    let current_ma = 1e3 * current_a;
-    let above = curve.iter().position(|point| point.0 > current_ma);
-    let last = curve[curve.len() - 1];
-    let gpm = match above {
-        None => last.1,
-        Some(0) => 0.0,
-        Some(k) => {
-            let ((i0, q0), (i1, q1)) = (curve[k - 1], curve[k]);
-            q0 + (q1 - q0) * (current_ma - i0) / (i1 - i0)
-        }
-    };
-    gpm * GPM
+    value_at(curve, 1e3 * current_a) * GPM
 }
 
 /// Rocker angle, degree, at a share of the stroke.

@@ -4,8 +4,8 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
 use crate::second_rig::driven_hitch::Conditions;
-use crate::second_rig::hidden::{Fidelity, Shape};
-use crate::second_rig::hideable::HIDEABLE;
+use crate::second_rig::hidden::Fidelity;
+use crate::second_rig::hideable::find;
 use crate::second_rig::physics::{Physics, SpoolMotion, Stiction};
 
 /// Furthest that a threshold is off the data sheet, A.
@@ -43,7 +43,25 @@ pub struct Drawn {
     pub angles_deg: Vec<f64>,
 }
 
+impl Readings {
+    /// What an angle sensor shows at an angle, degree, with noise of one sigma times `noise`.
+    #[must_use]
+    pub fn shown_deg(&self, angle_deg: f64, noise: f64) -> f64 {
+        let digit_deg = self.angle_digit_deg;
+        ((angle_deg + self.angle_noise_deg * noise) / digit_deg).round() * digit_deg
+    }
+}
+
 impl Drawn {
+    /// Other sensors and, of a textbook machine, another lag: a quarter of the sensors is free of noise.
+    pub(crate) fn redraw_angle_and_lag(&mut self, random: &mut Pcg64) {
+        self.readings.angle_noise_deg = random.random_range(-0.033_f64..0.1).max(0.0);
+        self.readings.angle_digit_deg = 1e-3 * 100.0_f64.powf(random.random::<f64>());
+        if !self.structured {
+            self.conditions.spool_lag_s = random.random_range(0.020..0.055);
+        }
+    }
+
     /// The same machine with spools that move like this and next to no other lag.
     #[must_use]
     pub fn with_spool(mut self, motion: SpoolMotion) -> Self {
@@ -63,11 +81,7 @@ pub fn draw(seed: u64, moves: usize) -> Drawn {
         lower_shift_a: random.random_range(-MOST_SHIFT_A..MOST_SHIFT_A),
         ..Physics::default()
     };
-    let fidelity = if structured {
-        Fidelity::Structured
-    } else {
-        Fidelity::Faithful
-    };
+    let fidelity = Fidelity::of(structured);
     let sizes = [
         ("solenoid-hysteresis", random.random_range(0.05..0.2)),
         ("coulomb-friction", random.random_range(100.0..500.0)),
@@ -78,12 +92,8 @@ pub fn draw(seed: u64, moves: usize) -> Drawn {
         ("compensator-droop", random.random_range(0.001..0.005)),
     ];
     for (id, size) in sizes {
-        let hideable = HIDEABLE.iter().find(|hideable| hideable.id == id);
-        let hide = hideable
-            .unwrap_or_else(|| panic!("the second rig has no {id}"))
-            .hide;
-        let random = &mut random;
-        hide(&mut physics, size, &mut Shape { fidelity, random });
+        let hideable = find(id).unwrap_or_else(|| panic!("the second rig has no {id}"));
+        hideable.put(&mut physics, size, fidelity, &mut random);
     }
     physics.sensors.angle_lag_s = random.random_range(0.0..0.01);
     if structured {

@@ -12,8 +12,8 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 use super::draw::Drawn;
-use super::session::{Instant, MINUTE_S, MoveFigures, WATCHED_S, judge};
-use super::shortest::{SATURATION_A, Shortest};
+use super::session::{Instant, MoveFigures, judged};
+use super::shortest::SATURATION_A;
 use crate::second_rig::data_sheet::{KNOWN_SPOOL_LAG_S, LIFT_TABLE, LOWER_TABLE};
 use crate::second_rig::driven_hitch::DrivenHitch;
 
@@ -69,12 +69,9 @@ pub fn drive(drawn: &Drawn) -> Vec<MoveFigures> {
     let mut hitch = DrivenHitch::new(&drawn.physics, drawn.conditions, drawn.angles_deg[0]);
     let mut random = Pcg64Mcg::seed_from_u64(drawn.seed);
     let mut plain = Plain::default();
-    let readings = drawn.readings;
-    let mut step = |hitch: &mut DrivenHitch<'_>, to_deg: f64| {
+    judged(drawn, |to_deg| {
         let noise: f64 = StandardNormal.sample(&mut random);
-        let digit_deg = readings.angle_digit_deg;
-        let angle_deg = hitch.shown_deg() + readings.angle_noise_deg * noise;
-        let angle_deg = (angle_deg / digit_deg).round() * digit_deg;
+        let angle_deg = drawn.readings.shown_deg(hitch.shown_deg(), noise);
         let currents_a = plain.step(hitch.shown_at_rest_deg(to_deg) - angle_deg);
         let instant = Instant {
             rocker_deg: hitch.rocker_deg(),
@@ -86,21 +83,5 @@ pub fn drive(drawn: &Drawn) -> Vec<MoveFigures> {
         };
         hitch.step(currents_a);
         instant
-    };
-    let last = drawn.angles_deg.len() - 2;
-    (0..=last)
-        .map(|index| {
-            let (from_deg, to_deg) = (hitch.rocker_deg(), drawn.angles_deg[index + 1]);
-            let shortest = Shortest::find(drawn, from_deg, to_deg);
-            let after_s = if index == last { MINUTE_S } else { WATCHED_S };
-            let steps = ((3.0 * shortest.time_s + after_s) * 1e3) as usize;
-            let instants: Vec<Instant> = (0..steps).map(|_| step(&mut hitch, to_deg)).collect();
-            MoveFigures {
-                seed: drawn.seed,
-                structured: drawn.structured,
-                index,
-                ..judge(from_deg, to_deg, &instants, shortest)
-            }
-        })
-        .collect()
+    })
 }

@@ -13,9 +13,9 @@ use super::shortest::{ARRIVED_DEG, Shortest};
 use crate::second_rig::driven_hitch::DrivenHitch;
 
 /// From the step of the lever: three times the shortest time, and this, s.
-pub(super) const WATCHED_S: f64 = 4.0;
+const WATCHED_S: f64 = 4.0;
 /// After the last move, s.
-pub(super) const MINUTE_S: f64 = 60.0;
+const MINUTE_S: f64 = 60.0;
 /// One sigma of the pressures, bar.
 const PRESSURE_NOISE_BAR: f64 = 0.15;
 
@@ -132,9 +132,7 @@ impl<'a> Session<'a> {
     fn inputs(&mut self, lever_deg: f64) -> Inputs {
         let milli = |value: f64| (value * 1e3).round() as i32;
         let mut noise = || -> f64 { StandardNormal.sample(&mut self.random) };
-        let digit_deg = self.readings.angle_digit_deg;
-        let angle_deg = self.hitch.shown_deg() + self.readings.angle_noise_deg * noise();
-        let angle_deg = (angle_deg / digit_deg).round() * digit_deg;
+        let angle_deg = self.readings.shown_deg(self.hitch.shown_deg(), noise());
         let [cylinder, pump] = self
             .hitch
             .shown_bar()
@@ -183,33 +181,30 @@ pub fn drive_watched(
 ) -> Vec<MoveFigures> {
     let mut session = Session::new(drawn, calibration);
     session.pick_up();
-    let last = drawn.angles_deg.len() - 2;
-    (0..=last)
-        .map(|index| {
-            let from_deg = session.hitch.rocker_deg();
-            let to_deg = drawn.angles_deg[index + 1];
-            let shortest = Shortest::find(drawn, from_deg, to_deg);
-            let after_s = if index == last { MINUTE_S } else { WATCHED_S };
-            let steps = ((3.0 * shortest.time_s + after_s) * 1e3) as usize;
-            let instants: Vec<Instant> = (0..steps).map(|_| session.step(to_deg)).collect();
-            instants.iter().for_each(|instant| watch(to_deg, instant));
-            let figures = judge(from_deg, to_deg, &instants, shortest);
-            MoveFigures {
-                seed: drawn.seed,
-                structured: drawn.structured,
-                index,
-                ..figures
-            }
-        })
-        .collect()
+    judged(drawn, |to_deg| {
+        let instant = session.step(to_deg);
+        watch(to_deg, &instant);
+        instant
+    })
 }
 
-pub(super) fn judge(
-    from_deg: f64,
-    to_deg: f64,
-    instants: &[Instant],
-    shortest: Shortest,
-) -> MoveFigures {
+/// Figures of every move of a machine; `step` is a millisecond towards a set point, degree.
+pub(super) fn judged(drawn: &Drawn, mut step: impl FnMut(f64) -> Instant) -> Vec<MoveFigures> {
+    let last = drawn.angles_deg.len() - 2;
+    let figures = |index: usize| {
+        let to_deg = drawn.angles_deg[index + 1];
+        let mut instants = vec![step(to_deg)];
+        let shortest = Shortest::find(drawn, instants[0].rocker_deg, to_deg);
+        let after_s = if index == last { MINUTE_S } else { WATCHED_S };
+        let steps = ((3.0 * shortest.time_s + after_s) * 1e3) as usize;
+        instants.extend((1..steps).map(|_| step(to_deg)));
+        judge(drawn, index, &instants, shortest)
+    };
+    (0..=last).map(figures).collect()
+}
+
+fn judge(drawn: &Drawn, index: usize, instants: &[Instant], shortest: Shortest) -> MoveFigures {
+    let (from_deg, to_deg) = (instants[0].rocker_deg, drawn.angles_deg[index + 1]);
     let way = (to_deg - from_deg).signum();
     let beyond = |instant: &Instant| (instant.rocker_deg - to_deg) * way;
     let away = |instant: &Instant| beyond(instant).abs() > ARRIVED_DEG;
@@ -223,9 +218,9 @@ pub(super) fn judge(
     );
     let time_s = arrived as f64 * 1e-3;
     MoveFigures {
-        seed: 0,
-        structured: false,
-        index: 0,
+        seed: drawn.seed,
+        structured: drawn.structured,
+        index,
         from_deg,
         to_deg,
         time_s,

@@ -55,13 +55,7 @@ impl Case {
     pub fn draw(seed: u64) -> Self {
         let mut drawn = draw(seed, 1);
         let mut random = Pcg64::seed_from_u64(seed ^ 0xF2EE_2E00);
-        let readings = &mut drawn.readings;
-        // A quarter of the sensors is free of noise.
-        readings.angle_noise_deg = random.random_range(-0.033_f64..0.1).max(0.0);
-        readings.angle_digit_deg = 1e-3 * 100.0_f64.powf(random.random::<f64>());
-        if !drawn.structured {
-            drawn.conditions.spool_lag_s = random.random_range(0.020..0.055);
-        }
+        drawn.redraw_angle_and_lag(&mut random);
         let kind = if random.random::<bool>() {
             Kind::HoldsLast
         } else {
@@ -111,9 +105,7 @@ impl Case {
             Kind::HoldsLast => shown,
             Kind::Trembles => {
                 let noise: f64 = StandardNormal.sample(&mut random);
-                let digits =
-                    (shown_deg + readings.angle_noise_deg * noise) / readings.angle_digit_deg;
-                MilliDegree((digits.round() * readings.angle_digit_deg * 1e3).round() as i32)
+                MilliDegree((readings.shown_deg(shown_deg, noise) * 1e3).round() as i32)
             }
         };
         let mut cost = Cost {

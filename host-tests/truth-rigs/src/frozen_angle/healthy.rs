@@ -8,7 +8,7 @@ use rand_pcg::Pcg64;
 
 use crate::drawn_hitches::draw::{Drawn, draw};
 use crate::drawn_hitches::session::{Instant, Session};
-use crate::second_rig::hidden::{Fidelity, Shape};
+use crate::second_rig::hidden::Fidelity;
 use crate::second_rig::hideable::HIDEABLE;
 use crate::second_rig::linkage;
 use crate::second_rig::physics::{Ground, Stiction};
@@ -62,12 +62,8 @@ impl Surroundings {
 
 fn surroundings(seed: u64, random: &mut Pcg64) -> Surroundings {
     let mut drawn = draw(seed, 1);
+    drawn.redraw_angle_and_lag(random);
     let physics = &mut drawn.physics;
-    drawn.readings.angle_noise_deg = random.random_range(-0.033_f64..0.1).max(0.0);
-    drawn.readings.angle_digit_deg = 1e-3 * 100.0_f64.powf(random.random::<f64>());
-    if !drawn.structured {
-        drawn.conditions.spool_lag_s = random.random_range(0.020..0.055);
-    }
     // A third of the machines in the cold.
     if random.random_bool(0.3) {
         drawn.conditions.oil_temperature_c = random.random_range(0.0..15.0);
@@ -84,11 +80,7 @@ fn surroundings(seed: u64, random: &mut Pcg64) -> Surroundings {
         let leak = HIDEABLE.iter().find(|what| what.id.contains("leak"));
         if let Some(what) = leak {
             let size = what.draw_size(random);
-            let mut shape = Shape {
-                fidelity: Fidelity::Faithful,
-                random,
-            };
-            (what.hide)(physics, size, &mut shape);
+            what.put(physics, size, Fidelity::Faithful, random);
         }
     }
     let ground_deg = random

@@ -1,9 +1,10 @@
 //! Detectability of the hidden effects of a case in its measurements.
 
+use hitch_campaign::Bench;
+
 use crate::second_rig::campaign_writer::{LOAD_SIGMA, PlannedRun, perfect_readings, planned_runs};
 use crate::second_rig::draw::{Case, Hidden};
 use crate::second_rig::instruments::CHANNEL_SIGMA;
-use crate::second_rig::manoeuvres::Stand;
 use crate::second_rig::test_stand::{Reading, SAMPLE_RATE_HZ};
 
 /// Prior sigma of the skew between currents and channels, s: a quarter of a sample.
@@ -39,7 +40,7 @@ pub fn detectability(case: &Case, hidden: &Hidden) -> f64 {
 fn heavier(runs: &[PlannedRun]) -> Vec<PlannedRun> {
     let mut heavier = runs.to_vec();
     for run in &mut heavier {
-        if matches!(run.manoeuvre.stand, Stand::Hitch { .. }) {
+        if matches!(run.manoeuvre.bench, Bench::Hitch { .. }) {
             run.circumstances.load_factor *= 1.0 + LOAD_SIGMA;
         }
     }

@@ -73,13 +73,8 @@ impl Adopted {
     #[must_use]
     pub fn ask(&self) -> Graded {
         let (first, second) = (campaign(&self.foreign.first), campaign(&self.posed.case));
-        let start = Instant::now();
-        let answer = explaining::answer_since(&first, &second, &self.model);
-        Graded {
-            posed: self.posed.clone(),
-            answer,
-            seconds: start.elapsed().as_secs_f64(),
-        }
+        let answer = || explaining::answer_since(&first, &second, &self.model);
+        self.posed.answered(answer)
     }
 
     /// Error that a model leaves in the third campaign, in sigmas.

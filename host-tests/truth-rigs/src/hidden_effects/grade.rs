@@ -61,11 +61,15 @@ impl Posed {
     #[must_use]
     pub fn ask_about(&self, model: &Model) -> Graded {
         let campaign = campaign(&self.case);
+        self.answered(|| explaining::answer(&campaign, model))
+    }
+
+    /// The answer of a method, timed.
+    pub(super) fn answered(&self, answer: impl FnOnce() -> Answer) -> Graded {
         let start = Instant::now();
-        let answer = explaining::answer(&campaign, model);
         Graded {
             posed: self.clone(),
-            answer,
+            answer: answer(),
             seconds: start.elapsed().as_secs_f64(),
         }
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use hitch_campaign::{Bench, Campaign, Noise, Run};
+use hitch_campaign::{Bench, Campaign, Run};
 use hitch_plant::Channel;
 use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -12,8 +12,8 @@ use rand_pcg::Pcg64;
 use serde_json::{Map, Value, json};
 
 use super::draw::Case;
-use super::instruments::CHANNEL_SIGMA;
-use super::manoeuvres::{Course, Manoeuvre, Plan, Stand, runs};
+use super::instruments::stated_noise;
+use super::manoeuvres::{Course, Manoeuvre, Plan, runs};
 use super::physics::Physics;
 use super::test_stand::{Circumstances, Family, Reading, SAMPLE_RATE_HZ, measure};
 
@@ -81,12 +81,7 @@ pub fn campaign(case: &Case) -> Campaign {
         description: "Hitch test bench campaign".to_owned(),
         sample_rate_hz: SAMPLE_RATE_HZ,
         synchronous: false,
-        noise: Noise {
-            lift_current_a: Some(current_sigma_a),
-            lower_current_a: Some(current_sigma_a),
-            channels: CHANNEL_SIGMA.map(Some),
-            oil_temperature_c: None,
-        },
+        noise: stated_noise(current_sigma_a),
         runs,
     }
 }
@@ -108,12 +103,7 @@ pub fn log(case: &Case, physics: &Physics, run: &PlannedRun, random: &mut impl R
         std::array::from_fn(|channel| case.instruments.log_channel(channel, &readings, random));
     Run {
         file: manoeuvre.file.clone(),
-        bench: match manoeuvre.stand {
-            Stand::Hitch { load_kg, .. } => Bench::Hitch { load_kg },
-            Stand::Flow { port_bar } => Bench::Flow {
-                port_pressure_bar: port_bar,
-            },
-        },
+        bench: manoeuvre.bench,
         oil_temperature_c: manoeuvre.oil_temperature_c,
         oil_temperature_known: true,
         time_s,

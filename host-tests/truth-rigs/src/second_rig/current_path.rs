@@ -15,8 +15,7 @@ pub struct CurrentPath {
 
 impl CurrentPath {
     /// A path at rest without current. `known_lag_s` is the lag that the family is known for.
-    #[must_use]
-    pub fn new(physics: &Physics, shift_a: f64, known_lag_s: f64) -> Self {
+    fn new(physics: &Physics, shift_a: f64, known_lag_s: f64) -> Self {
         Self {
             plays: physics.plays.iter().map(|play| (*play, 0.0)).collect(),
             stiction: physics.stiction.map(Stuck::new),
@@ -25,6 +24,13 @@ impl CurrentPath {
                 .into(),
             shift_a,
         }
+    }
+
+    /// The paths of lift and lowering coil.
+    #[must_use]
+    pub fn both(physics: &Physics, known_lag_s: f64) -> [Self; 2] {
+        [physics.lift_shift_a, physics.lower_shift_a]
+            .map(|shift_a| Self::new(physics, shift_a, known_lag_s))
     }
 
     /// Goes on by `dt_s` under a coil current; returns the current that the valve's table is read at.

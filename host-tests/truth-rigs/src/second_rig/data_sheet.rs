@@ -3,6 +3,8 @@
 
 use std::sync::LazyLock;
 
+use crate::polyline::value_at;
+
 /// Pascal in a bar.
 pub const BAR: f64 = 1e5;
 /// m3/s in a litre per minute.
@@ -86,15 +88,7 @@ impl FlowTable {
     /// Flow at the reference drop, m3/s.
     #[must_use]
     pub fn flow_m3_s(&self, current_a: f64) -> f64 {
-        let behind = self.points.partition_point(|point| point.0 <= current_a);
-        match behind {
-            0 => 0.0,
-            n if n == self.points.len() => self.points[n - 1].1,
-            n => {
-                let ((i0, q0), (i1, q1)) = (self.points[n - 1], self.points[n]);
-                q0 + (q1 - q0) * (current_a - i0) / (i1 - i0)
-            }
-        }
+        value_at(&self.points, current_a)
     }
 }
 

@@ -4,7 +4,7 @@ use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::hidden::{Fidelity, Hideable, Shape};
+use super::hidden::{Fidelity, Hideable};
 use super::hideable::HIDEABLE;
 use super::instruments::Instruments;
 use super::manoeuvres::Plan;
@@ -102,11 +102,9 @@ impl Case {
     pub fn physics_with(&self, chosen: impl Fn(&Hidden) -> bool) -> Physics {
         let mut physics = self.unnamed.clone();
         for hidden in self.hidden.iter().filter(|hidden| chosen(hidden)) {
-            let mut shape = Shape {
-                fidelity: self.fidelity,
-                random: &mut Pcg64::seed_from_u64(hidden.shape_seed),
-            };
-            (hidden.what.hide)(&mut physics, hidden.size, &mut shape);
+            let mut random = Pcg64::seed_from_u64(hidden.shape_seed);
+            let (what, size) = (hidden.what, hidden.size);
+            what.put(&mut physics, size, self.fidelity, &mut random);
         }
         physics
     }
@@ -119,11 +117,7 @@ pub fn draw(seed: u64, wish: &Wish) -> Case {
     let structured = random.random::<bool>();
     let rough = random.random::<bool>();
     let kind = random.random::<f64>();
-    let fidelity = wish.fidelity.unwrap_or(if structured {
-        Fidelity::Structured
-    } else {
-        Fidelity::Faithful
-    });
+    let fidelity = wish.fidelity.unwrap_or(Fidelity::of(structured));
     let rough = wish.rough.unwrap_or(rough);
     let kind = match (wish.effect, wish.kind) {
         (Some(_), _) => Kind::Single,

@@ -43,11 +43,9 @@ impl<'a> DrivenHitch<'a> {
         let machine = Machine::new(physics, conditions.load_kg, circuit.fluidity());
         let motion = machine.at_rest(linkage::travel_m(rocker_deg));
         circuit.set_slow(0.0, motion.travel_m);
-        let shifts_a = [physics.lift_shift_a, physics.lower_shift_a];
         Self {
             circuit,
-            paths: shifts_a
-                .map(|shift_a| CurrentPath::new(physics, shift_a, conditions.spool_lag_s)),
+            paths: CurrentPath::both(physics, conditions.spool_lag_s),
             spools: Spools::default(),
             machine,
             motion,

@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::draw::{Case, Hidden, Kind};
-use super::hidden::{Fidelity, Hideable, Shape};
+use super::hidden::{Fidelity, Hideable};
 use super::hideable::HIDEABLE;
 use super::instruments::Instruments;
 use super::manoeuvres::Plan;
@@ -96,11 +96,7 @@ fn physics_of(own: &[(&'static Hideable, f64)], random: &mut Pcg64) -> Physics {
         ..Physics::default()
     };
     for (what, size) in own {
-        let mut shape = Shape {
-            fidelity: Fidelity::Structured,
-            random,
-        };
-        (what.hide)(&mut physics, *size, &mut shape);
+        what.put(&mut physics, *size, Fidelity::Structured, random);
     }
     physics
 }

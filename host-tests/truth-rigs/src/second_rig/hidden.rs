@@ -15,6 +15,18 @@ pub enum Fidelity {
     Structured,
 }
 
+impl Fidelity {
+    /// With more detail, or without.
+    #[must_use]
+    pub fn of(structured: bool) -> Self {
+        if structured {
+            Self::Structured
+        } else {
+            Self::Faithful
+        }
+    }
+}
+
 /// Draws the rest of a shape.
 #[derive(Debug)]
 pub struct Shape<'a> {
@@ -85,13 +97,16 @@ impl Hideable {
             hide,
         }
     }
-}
 
-impl Hideable {
     /// Whether a rig of this family can have it.
     #[must_use]
     pub fn fits(&self, family: Family) -> bool {
         self.steady || family == Family::Dynamic
+    }
+
+    /// Puts it into a rig at a size; the rest of its shape is drawn.
+    pub fn put(&self, rig: &mut Physics, size: f64, fidelity: Fidelity, random: &mut Pcg64) {
+        (self.hide)(rig, size, &mut Shape { fidelity, random });
     }
 
     /// A random size.

@@ -1,5 +1,6 @@
 //! Instruments and logger of a run: offset, noise, resolution, gaps, clock offsets.
 
+use hitch_campaign::Noise;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -19,6 +20,17 @@ const SLOWNESS: f64 = 0.95;
 
 /// Port pressure of a flow bench in the first sample, before pressurisation, bar.
 const EMPTY_PORT_BAR: f64 = 3.0;
+
+/// Noise as a campaign states it, with this sigma of the currents, A.
+#[must_use]
+pub fn stated_noise(current_sigma_a: f64) -> Noise {
+    Noise {
+        lift_current_a: Some(current_sigma_a),
+        lower_current_a: Some(current_sigma_a),
+        channels: CHANNEL_SIGMA.map(Some),
+        oil_temperature_c: None,
+    }
+}
 
 /// The instruments of a campaign.
 #[derive(Debug, Clone)]

@@ -74,32 +74,34 @@ fn geometry(rocker_rad: f64) -> (f64, [f64; 2]) {
     (pin, [f_x + e_x * 0.70 / 0.40, f_y + e_y * 0.70 / 0.40])
 }
 
-/// Rocker angle, rad, with the pin at a place; `pin` rises with the angle.
-fn rocker_rad(pin_m: f64) -> f64 {
-    let (mut low, mut high) = (0.3, 2.8);
-    for _ in 0..60 {
-        let middle: f64 = 0.5 * (low + high);
-        if geometry(middle).0 < pin_m {
+/// The ends between which a condition turns false, from low to high, after so many halvings.
+fn bisected(
+    [mut low, mut high]: [f64; 2],
+    halvings: u32,
+    is_low: impl Fn(f64) -> bool,
+) -> [f64; 2] {
+    for _ in 0..halvings {
+        let middle = 0.5 * (low + high);
+        if is_low(middle) {
             low = middle;
         } else {
             high = middle;
         }
     }
+    [low, high]
+}
+
+/// Rocker angle, rad, with the pin at a place; `pin` rises with the angle.
+fn rocker_rad(pin_m: f64) -> f64 {
+    let [low, high] = bisected([0.3, 2.8], 60, |angle_rad| geometry(angle_rad).0 < pin_m);
     0.5 * (low + high)
 }
 
 /// The rocker swings as far ahead of straight down as behind it.
 fn pin_at_zero_m() -> f64 {
     let down = std::f64::consts::FRAC_PI_2;
-    let (mut low, mut high) = (0.1, 1.2);
-    for _ in 0..60 {
-        let half = 0.5 * (low + high);
-        if geometry(down + half).0 - geometry(down - half).0 < STROKE_M {
-            low = half;
-        } else {
-            high = half;
-        }
-    }
+    let sweep_m = |half_rad: f64| geometry(down + half_rad).0 - geometry(down - half_rad).0;
+    let [low, _] = bisected([0.1, 1.2], 60, |half_rad| sweep_m(half_rad) < STROKE_M);
     geometry(down - low).0
 }
 
@@ -113,15 +115,9 @@ fn pitch_rad(hitch: [f64; 2], level: [f64; 2]) -> f64 {
         x.hypot(y)
     };
     let length = reach(level, 0.0);
-    let (mut low, mut high) = (-0.7, 0.7);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        if reach(hitch, middle) > length {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let [low, high] = bisected([-0.7, 0.7], 50, |pitch_rad| {
+        reach(hitch, pitch_rad) > length
+    });
     0.5 * (low + high)
 }
 

@@ -1,11 +1,13 @@
 //! Manoeuvres of lab and field plans: loads, temperatures and current traces.
 
+use hitch_campaign::Bench;
 use rand::Rng;
 
 use super::data_sheet::{
     AREA_M2, DEAD_WEIGHT_KG, GRAVITY_M_S2, LIFT_TABLE, LOWER_REFERENCE_PA, LOWER_TABLE, STROKE_M,
 };
 use super::linkage;
+use crate::polyline::value_at;
 
 /// Where and how a campaign is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -14,23 +16,6 @@ pub enum Plan {
     Lab,
     /// Duty cycles and a hold.
     Field,
-}
-
-/// Bench of the valve block.
-#[derive(Debug, Clone, Copy)]
-pub enum Stand {
-    /// Cylinder, linkage, load.
-    Hitch {
-        /// Load as weighed, kg.
-        load_kg: f64,
-        /// Rocker angle at the start, degree.
-        start_deg: f64,
-    },
-    /// The cylinder port held at a pressure, bar.
-    Flow {
-        /// Port pressure, bar.
-        port_bar: f64,
-    },
 }
 
 /// Course of a current: straight lines between knots of time, s, and current, A.
@@ -47,16 +32,7 @@ impl Course {
     /// Current at a time, A; before the first knot and behind the last one as there, zero without knots.
     #[must_use]
     pub fn at(&self, time_s: f64) -> f64 {
-        let behind = self.0.partition_point(|knot| knot.0 <= time_s);
-        match (behind, self.0.len()) {
-            (_, 0) => 0.0,
-            (0, _) => self.0[0].1,
-            (n, all) if n == all => self.0[n - 1].1,
-            (n, _) => {
-                let ((t0, i0), (t1, i1)) = (self.0[n - 1], self.0[n]);
-                i0 + (i1 - i0) * (time_s - t0) / (t1 - t0)
-            }
-        }
+        value_at(&self.0, time_s)
     }
 
     /// Up to a current, along it, and down again; `hold_s` counts from the ramp's start to the next ramp's.
@@ -96,8 +72,10 @@ const SWITCHED_S: f64 = 0.008;
 pub struct Manoeuvre {
     /// File name.
     pub file: String,
-    /// Bench.
-    pub stand: Stand,
+    /// Bench, with the load as weighed.
+    pub bench: Bench,
+    /// Rocker angle of a hitch at the start, degree.
+    pub start_deg: f64,
     /// Oil temperature, degC.
     pub oil_temperature_c: f64,
     /// Duration, s.
@@ -129,10 +107,11 @@ impl Manoeuvre {
         }
     }
 
-    fn still(file: String, stand: Stand, oil_temperature_c: f64, duration_s: f64) -> Self {
+    fn still(file: String, bench: Bench, oil_temperature_c: f64, duration_s: f64) -> Self {
         Self {
             file,
-            stand,
+            bench,
+            start_deg: f64::NAN,
             oil_temperature_c,
             duration_s,
             lift: Course::default(),
@@ -214,7 +193,10 @@ fn flow_bench() -> Vec<Manoeuvre> {
         let name = if way == Way::Lift { "lift" } else { "lower" };
         let file = format!("flow_{name}_{port_bar:03}bar.csv");
         let duration_s = levels_a.len() as f64 * hold_s;
-        let still = Manoeuvre::still(file, Stand::Flow { port_bar }, 40.0, duration_s);
+        let bench = Bench::Flow {
+            port_pressure_bar: port_bar,
+        };
+        let still = Manoeuvre::still(file, bench, 40.0, duration_s);
         Manoeuvre::of_one_valve(way, Course::stairs(levels_a, hold_s), still)
     };
     vec![
@@ -239,23 +221,21 @@ fn single_move(
         Way::Lift => ("lift", 52.9),
         Way::Lower => ("lower", 130.6),
     };
-    let stand = Stand::Hitch {
-        load_kg,
-        start_deg: from_deg + random.random_range(-0.5..0.5),
-    };
+    let start_deg = from_deg + random.random_range(-0.5..0.5);
     let mut course = Course::default();
     course.pulse(0.5, seconds, current_a);
     let file = format!("{name}_{current_a}A_{load_kg:03}kg.csv");
-    let still = Manoeuvre::still(file, stand, 40.0, seconds + 2.0);
+    let still = Manoeuvre::still(file, Bench::Hitch { load_kg }, 40.0, seconds + 2.0);
+    let still = Manoeuvre { start_deg, ..still };
     Manoeuvre::of_one_valve(way, course, still)
 }
 
 fn hold(load_kg: f64, start_deg: f64, random: &mut impl Rng) -> Manoeuvre {
-    let stand = Stand::Hitch {
-        load_kg,
+    let file = format!("hold_{load_kg}kg.csv");
+    Manoeuvre {
         start_deg: start_deg + random.random_range(-0.5..0.5),
-    };
-    Manoeuvre::still(format!("hold_{load_kg}kg.csv"), stand, 40.0, 30.0)
+        ..Manoeuvre::still(file, Bench::Hitch { load_kg }, 40.0, 30.0)
+    }
 }
 
 /// Moves up and down at random, planned by the data sheet to stay in a part of the stroke.
@@ -268,12 +248,10 @@ fn duty(
     random: &mut impl Rng,
 ) -> Manoeuvre {
     let mut travel_m: f64 = 0.05 + random.random_range(-0.004..0.004);
-    let stand = Stand::Hitch {
-        load_kg,
-        start_deg: linkage::at(travel_m).rocker_deg,
-    };
     let file = format!("{name}_{load_kg:03}kg_{oil_temperature_c}C.csv");
-    let mut run = Manoeuvre::still(file, stand, oil_temperature_c, duration_s);
+    let bench = Bench::Hitch { load_kg };
+    let mut run = Manoeuvre::still(file, bench, oil_temperature_c, duration_s);
+    run.start_deg = linkage::at(travel_m).rocker_deg;
     let mut time_s = 0.5 + random.random_range(0.0..0.7);
     while time_s < duration_s - 2.0 {
         let upwards = 0.5 + 0.8 * (0.5 * STROKE_M - travel_m) / (0.5 * STROKE_M);

@@ -1,26 +1,26 @@
 //! Runs of an external plan on the second rig.
 
-use hitch_identification::design::plan::{RunPlan, Stand as PlannedStand};
+use hitch_campaign::Bench;
+use hitch_identification::design::plan::{RunPlan, Stand};
 use hitch_plant::{Currents, Model, Rig};
 
-use super::manoeuvres::{Course, Manoeuvre, Stand};
+use super::manoeuvres::{Course, Manoeuvre};
 
 /// A planned run; `model` defines its start angle.
 #[must_use]
 pub fn on_order(plan: &RunPlan, model: &Model) -> Manoeuvre {
-    let stand = match (plan.stand, plan.rig(model)) {
-        (PlannedStand::Hitch { load_kg, .. }, Rig::Hitch(rig)) => Stand::Hitch {
-            load_kg,
-            start_deg: rig.start_angle_rad.to_degrees(),
-        },
-        (PlannedStand::Hitch { .. }, Rig::Flow { .. }) => unreachable!("a hitch is no flow bench"),
-        (PlannedStand::Flow { port_pressure_bar }, _) => Stand::Flow {
-            port_bar: port_pressure_bar,
-        },
+    let bench = match plan.stand {
+        Stand::Hitch { load_kg, .. } => Bench::Hitch { load_kg },
+        Stand::Flow { port_pressure_bar } => Bench::Flow { port_pressure_bar },
+    };
+    let start_deg = match plan.rig(model) {
+        Rig::Hitch(rig) => rig.start_angle_rad.to_degrees(),
+        Rig::Flow { .. } => f64::NAN,
     };
     Manoeuvre {
         file: String::new(),
-        stand,
+        bench,
+        start_deg,
         oil_temperature_c: plan.oil_temperature_c,
         duration_s: plan.duration_s(),
         lift: course(plan, |currents| currents.lift_a),

@@ -104,7 +104,7 @@ pub struct Sensors {
 }
 
 /// Everything.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Physics {
     /// Threshold shift of the lift valve, A.
     pub lift_shift_a: f64,
@@ -164,7 +164,7 @@ pub struct Physics {
     pub rocker_inertia_kg_m2: f64,
     /// Volume of free air over that of the oil at atmospheric pressure.
     pub air_ratio: f64,
-    /// Polytropic exponent of that air.
+    /// Polytropic exponent of that air, if there is any.
     pub air_exponent: f64,
     /// Relative change of the oil's compressibility.
     pub compressibility_error: f64,
@@ -198,50 +198,5 @@ impl Physics {
             self.pin_friction,
         ];
         self.ground.is_some() || forces.iter().any(|&force| force != 0.0)
-    }
-}
-
-impl Default for Physics {
-    fn default() -> Self {
-        Self {
-            lift_shift_a: 0.0,
-            lower_shift_a: 0.0,
-            plays: Vec::new(),
-            stiction: None,
-            spool: SpoolMotion::Immediate,
-            lift_flow_error: (0.0, 0.0),
-            lower_flow_error: (0.0, 0.0),
-            flow_force: FlowForce::default(),
-            droop: 0.0,
-            droop_with_flow: 0.0,
-            compensator_lag_s: 0.0,
-            check_loss_pa: 0.0,
-            check_loss_pa_s_m3: 0.0,
-            check_seating_s: 0.0,
-            pump_slip_m3_s_pa: 0.0,
-            relief_override_pa: 0.0,
-            leakage_m3_s_pa: 0.0,
-            leakage_thins: false,
-            return_turbulent: 0.0,
-            return_laminar: 0.0,
-            laminar_flow_number: 0.0,
-            friction: Friction::default(),
-            pin_friction: 0.0,
-            pin_friction_ripple: 0.0,
-            load_arm_m: 0.0,
-            ground: None,
-            inertia_share: 0.0,
-            rocker_inertia_kg_m2: 0.0,
-            air_ratio: 0.0,
-            air_exponent: 1.4,
-            compressibility_error: 0.0,
-            hose_m3_pa: 0.0,
-            hose_retardation_s: 0.0,
-            sensors: Sensors::default(),
-            cushion_m: 0.0,
-            flow_drift_1_s: 0.0,
-            unnamed_force_n: 0.0,
-            unnamed_wobble: 0.0,
-        }
     }
 }

@@ -1,11 +1,13 @@
 //! One run on the second rig, sample by sample, as perfect instruments would show it.
 
+use hitch_campaign::Bench;
+
 use super::angle_sensor::AngleSensor;
 use super::current_path::CurrentPath;
 use super::data_sheet::{BAR, KNOWN_SPOOL_LAG_S, LPM};
 use super::hydraulics::{Circuit, Spools};
 use super::linkage;
-use super::manoeuvres::{Manoeuvre, Stand};
+use super::manoeuvres::Manoeuvre;
 use super::mechanics::{Machine, Motion};
 use super::physics::Physics;
 
@@ -91,12 +93,12 @@ impl<'a> Rig<'a> {
         circumstances: Circumstances,
     ) -> Self {
         let circuit = Circuit::new(physics, run.oil_temperature_c);
-        let place = match run.stand {
-            Stand::Flow { port_bar } => Place::Flow(port_bar * BAR),
-            Stand::Hitch { load_kg, start_deg } => {
+        let place = match run.bench {
+            Bench::Flow { port_pressure_bar } => Place::Flow(port_pressure_bar * BAR),
+            Bench::Hitch { load_kg } => {
                 let load_kg = load_kg * circumstances.load_factor;
                 let machine = Machine::new(physics, load_kg, circuit.fluidity());
-                let start_m = linkage::travel_m(start_deg);
+                let start_m = linkage::travel_m(run.start_deg);
                 let motion = machine.at_rest(match family {
                     Family::Steady => start_m,
                     Family::Dynamic => machine.out_of_the_ground_m(start_m),
@@ -109,10 +111,9 @@ impl<'a> Rig<'a> {
             Family::Steady => 0.0,
             Family::Dynamic => KNOWN_SPOOL_LAG_S,
         };
-        let shifts_a = [physics.lift_shift_a, physics.lower_shift_a];
         let mut rig = Self {
             circuit,
-            paths: shifts_a.map(|shift_a| CurrentPath::new(physics, shift_a, known_lag_s)),
+            paths: CurrentPath::both(physics, known_lag_s),
             spools: Spools::default(),
             place,
             family,

@@ -7,11 +7,9 @@ use std::collections::VecDeque;
 
 use hitch_plant::components::lag::Lag;
 use hitch_plant::hooks::effect_hooks::{EffectHooks, SensorStage};
-use hitch_plant::{Channel, Parameter, ParameterKind, Reading};
+use hitch_plant::{Channel, Parameter, Reading};
 
 use crate::described::Described;
-
-const CHANNELS: &[Channel] = &[Channel::RockerAngle];
 
 /// Longest step of a sensor with lag, which interpolates the angle linearly between two steps, s. At the start and end
 /// of a motion, steps of 20 ms cause errors as large as the sensor's own noise; whole samples of dead time are affected
@@ -28,24 +26,19 @@ pub static FILTERING: Described = Described {
     shows: "the angle trails its true course by speed times lag, in both directions; pressures and \
          flow stay right",
     parameters: &[Parameter {
-        name: "time_constant",
-        unit: "s",
-        kind: ParameterKind::Time,
-        key: "time_constant_s",
         meaning: "time constant of the sensor",
-        null: 0.0,
         typical: 0.06,
         low: 0.0,
         high: 2.0,
+        ..Parameter::time("time_constant", "time_constant_s")
     }],
-    channels: CHANNELS,
+    channels: &[Channel::RockerAngle],
     attach: |values, _, hooks| attach(values[0], 0.0, hooks),
     ..Described::USUAL
 };
 
 /// A sensor with a filter and a dead time.
 pub static DELAYED: Described = Described {
-    id: "angle-sensor-lag",
     form: Some("delayed"),
     title: "Lag of the rocker angle sensor, with dead time",
     equation: "(1 - dead) lag y' + y = angle(t - dead lag)",
@@ -54,15 +47,11 @@ pub static DELAYED: Described = Described {
          stay right",
     parameters: &[
         Parameter {
-            name: "lag",
-            unit: "s",
-            kind: ParameterKind::Time,
-            key: "lag_s",
             meaning: "delay behind a steady motion",
-            null: 0.0,
             typical: 0.06,
             low: 0.0,
             high: 2.0,
+            ..Parameter::time("lag", "lag_s")
         },
         Parameter {
             meaning: "share of it that is dead time",
@@ -72,12 +61,11 @@ pub static DELAYED: Described = Described {
             ..Parameter::ratio("dead")
         },
     ],
-    channels: CHANNELS,
     attach: |values, _, hooks| {
         let dead_s = values[0] * values[1];
         attach(values[0] - dead_s, dead_s, hooks);
     },
-    ..Described::USUAL
+    ..FILTERING
 };
 
 fn attach(time_constant_s: f64, dead_s: f64, hooks: &mut EffectHooks) {

@@ -9,7 +9,7 @@
 
 use hitch_plant::hooks::effect_hooks::EffectHooks;
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
-use hitch_plant::{Channel, Parameter, ParameterKind};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
@@ -17,15 +17,11 @@ use crate::described::Described;
 const RATED_LPM: f64 = 40.0;
 
 const LOSS: Parameter = Parameter {
-    name: "loss",
-    unit: "bar",
-    kind: ParameterKind::Other,
-    key: "loss_bar",
     meaning: "pressure loss at 40 l/min beyond the cracking pressure",
-    null: 0.0,
     typical: 0.4,
     low: 0.0,
     high: 10.0,
+    ..Parameter::quantity("loss", "bar", "loss_bar")
 };
 
 const STEADY: Parameter = Parameter {

@@ -8,7 +8,7 @@
 //! sees the changes of the cylinder pressure, which damps its ringing.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
-use hitch_plant::{Channel, Parameter, ParameterKind};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
@@ -18,18 +18,12 @@ const SHORTEST_LAG_S: f64 = 1e-4;
 /// Longest step of the quasi-static plant that resolves a lagging compensator, s.
 const STEP_S: f64 = 0.002;
 
-const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
-
 const SLOPE: Parameter = Parameter {
-    name: "slope",
-    unit: "bar/bar",
-    kind: ParameterKind::Other,
-    key: "slope",
     meaning: "margin lost per bar of cylinder pressure",
-    null: 0.0,
     typical: 0.005,
     low: -0.02,
     high: 0.05,
+    ..Parameter::quantity("slope", "bar/bar", "slope")
 };
 
 const FLOW: Parameter = Parameter {
@@ -49,14 +43,13 @@ pub static WITH_LOAD: Described = Described {
     shows: "heavy loads lift slower than light ones, and the pump pressure stands less than its margin \
          over the load",
     parameters: &[SLOPE],
-    channels: CHANNELS,
+    channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
     attach: |values, _, hooks| fall_with_load(values[0], hooks),
     ..Described::USUAL
 };
 
 /// Droop with the load pressure and the flow.
 pub static WITH_FLOW: Described = Described {
-    id: "compensator-droop",
     form: Some("flow"),
     title: "Droop of the pressure compensator with flow and load",
     equation: "p_P - p_C = margin (1 - flow Q / Q_pump) - slope p_C",
@@ -71,17 +64,15 @@ pub static WITH_FLOW: Described = Described {
             ..SLOPE
         },
     ],
-    channels: CHANNELS,
     attach: |values, conditions, hooks| {
         fall_with_flow(values[0], conditions, hooks);
         fall_with_load(values[1], hooks);
     },
-    ..Described::USUAL
+    ..WITH_LOAD
 };
 
 /// Droop of a lagging compensator.
 pub static LAGGING: Described = Described {
-    id: "compensator-droop",
     form: Some("lagging"),
     title: "Lag of the pressure compensator, with droop over load and flow",
     equation: "lag p_P' = p_C + margin (1 - flow Q / Q_pump) - slope p_C - p_P",
@@ -90,15 +81,11 @@ pub static LAGGING: Described = Described {
          pressure that rings, which dies away the faster for it",
     parameters: &[
         Parameter {
-            name: "lag",
-            unit: "s",
-            kind: ParameterKind::Time,
-            key: "lag_s",
             meaning: "time constant of the pump pressure",
-            null: 0.0,
             typical: 0.01,
             low: 0.0,
             high: 0.1,
+            ..Parameter::time("lag", "lag_s")
         },
         Parameter {
             typical: 0.0,
@@ -109,7 +96,6 @@ pub static LAGGING: Described = Described {
             ..FLOW
         },
     ],
-    channels: CHANNELS,
     refines: true,
     attach: |values, conditions, hooks| {
         if values[0] >= SHORTEST_LAG_S {
@@ -119,7 +105,7 @@ pub static LAGGING: Described = Described {
         fall_with_load(values[1], hooks);
         fall_with_flow(values[2], conditions, hooks);
     },
-    ..Described::USUAL
+    ..WITH_LOAD
 };
 
 fn fall_with_flow(

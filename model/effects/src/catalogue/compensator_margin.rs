@@ -8,7 +8,7 @@
 
 use hitch_plant::hooks::effect_hooks::EffectHooks;
 use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Parameter, ParameterKind};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
@@ -17,15 +17,11 @@ use crate::described::Described;
 const CHANNELS: &[Channel] = &[Channel::PumpPressure];
 
 const EXCESS: Parameter = Parameter {
-    name: "excess",
-    unit: "bar",
-    kind: ParameterKind::Other,
-    key: "excess_bar",
     meaning: "difference of the margin from the declared one",
-    null: 0.0,
     typical: 0.5,
     low: -1.4,
     high: 10.0,
+    ..Parameter::quantity("excess", "bar", "excess_bar")
 };
 
 /// Another preload of the spring: margin and idle pressure change by the same amount.
@@ -44,7 +40,6 @@ pub static PRELOAD: Described = Described {
 
 /// Margin and idle pressure change by different amounts.
 pub static BYPASS: Described = Described {
-    id: "compensator-margin",
     form: Some("bypass"),
     title: "Deviation of the compensator margin and the idle pressure",
     equation: "p_P - p_C = margin + excess; p_idle = p_0 + idle excess",
@@ -61,9 +56,8 @@ pub static BYPASS: Described = Described {
             ..EXCESS
         },
     ],
-    channels: CHANNELS,
     attach: |values, _, hooks| exceed(values[0], values[1], hooks),
-    ..Described::USUAL
+    ..PRELOAD
 };
 
 fn exceed(margin_bar: f64, idle_bar: f64, hooks: &mut EffectHooks) {

@@ -7,7 +7,7 @@
 //! of the pressure force for a 76 mm cylinder, and some tenths of a millimetre of deflection.
 
 use hitch_plant::hooks::elements::Bristles;
-use hitch_plant::{Channel, Parameter, ParameterKind};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
@@ -15,15 +15,11 @@ use crate::described::Described;
 pub(crate) const TRANSITION_SPEED_M_S: f64 = 0.003;
 
 const FORCE: Parameter = Parameter {
-    name: "force",
-    unit: "N",
-    kind: ParameterKind::Other,
-    key: "force_n",
     meaning: "friction force at the piston",
-    null: 0.0,
     typical: 400.0,
     low: 0.0,
     high: 5000.0,
+    ..Parameter::quantity("force", "N", "force_n")
 };
 
 /// Friction that vanishes at rest.
@@ -50,7 +46,6 @@ const STEP_S: f64 = 0.01;
 
 /// Friction that persists at rest.
 pub static BRISTLES: Described = Described {
-    id: "coulomb-friction",
     form: Some("bristles"),
     title: "Coulomb friction at the piston, with friction force at rest",
     equation: "F = force * z / bending, z' = v - (|v| + creep) z / bending",
@@ -60,29 +55,20 @@ pub static BRISTLES: Described = Described {
     parameters: &[
         FORCE,
         Parameter {
-            name: "bending",
-            unit: "mm",
-            kind: ParameterKind::Other,
-            key: "bending_mm",
             meaning: "travel of the piston before the seal slips",
-            null: 0.0,
             typical: 0.3,
             low: 0.02,
             high: 5.0,
+            ..Parameter::quantity("bending", "mm", "bending_mm")
         },
         Parameter {
-            name: "creep",
-            unit: "mm/s",
-            kind: ParameterKind::Other,
-            key: "creep_mm_per_s",
             meaning: "creep speed of the seal at full force due to vibration; 0: no creep",
-            null: 0.0,
             typical: 0.0,
             low: 0.0,
             high: 8.0,
+            ..Parameter::quantity("creep", "mm/s", "creep_mm_per_s")
         },
     ],
-    channels: &Channel::ALL,
     attach: |values, _, hooks| {
         hooks.bristles = Some(Bristles {
             force_n: values[0],
@@ -91,5 +77,5 @@ pub static BRISTLES: Described = Described {
         });
         hooks.limit_step(STEP_S);
     },
-    ..Described::USUAL
+    ..SMOOTH
 };

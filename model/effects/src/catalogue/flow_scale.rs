@@ -25,21 +25,16 @@ const GROWTH: Parameter = Parameter {
     ..Parameter::ratio("growth")
 };
 
-const CHANNELS: &[Channel] = &[Channel::Flow, Channel::RockerAngle];
-
-const SOURCE: &str =
-    "equations 5 and 6 of the paper with another Cd A; paper, Table 5 against Table 2";
-
 /// Flow scale of the lift valve.
 pub static LIFT: Described = Described {
     id: "lift-flow-scale",
     title: "Scaled flow of the lift valve",
     equation: "Q = (1 + scale) Q_table(I)",
-    source: SOURCE,
+    source: "equations 5 and 6 of the paper with another Cd A; paper, Table 5 against Table 2",
     shows: "lifting at every current by the same factor: flow and speed; equivalent to another margin of the \
             compensator, another discharge coefficient or a stiffer spring of the check valve",
     parameters: &[SCALE],
-    channels: CHANNELS,
+    channels: &[Channel::Flow, Channel::RockerAngle],
     attach: |values, _, hooks| scale(&mut hooks.lift_flow_factor, values[0], 0.0),
     ..Described::USUAL
 };
@@ -60,13 +55,9 @@ pub static LIFT_UNEVEN: Described = Described {
 pub static LOWERING: Described = Described {
     id: "lower-flow-scale",
     title: "Scaled flow of the lowering valve",
-    equation: "Q = (1 + scale) Q_table(I)",
-    source: SOURCE,
     shows: "lowering at every current and load by the same factor: flow and speed",
-    parameters: &[SCALE],
-    channels: CHANNELS,
     attach: |values, _, hooks| scale(&mut hooks.lower_flow_factor, values[0], 0.0),
-    ..Described::USUAL
+    ..LIFT
 };
 
 /// Flow scale of the lowering valve that increases with its opening.

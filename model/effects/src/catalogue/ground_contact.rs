@@ -6,7 +6,7 @@
 
 use hitch_plant::hooks::effect_hooks::RunConditions;
 use hitch_plant::hooks::elements::Ground;
-use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
+use hitch_plant::{Channel, Dynamics, Parameter, SizeResponse};
 
 use crate::described::Described;
 
@@ -14,27 +14,19 @@ use crate::described::Described;
 const DAMPING_S_M: f64 = 1.5;
 
 const HEIGHT: Parameter = Parameter {
-    name: "height",
-    unit: "m",
-    kind: ParameterKind::Other,
-    key: "height_m",
     meaning: "height of the ground over the lowest point of the stroke",
-    null: 0.0,
     typical: 0.1,
     low: 0.0,
     high: 0.65,
+    ..Parameter::quantity("height", "m", "height_m")
 };
 
 const STIFFNESS: Parameter = Parameter {
-    name: "stiffness",
-    unit: "kN/m",
-    kind: ParameterKind::Other,
-    key: "stiffness_kn_m",
     meaning: "stiffness of the ground",
-    null: 0.0,
     typical: 500.0,
     low: 50.0,
     high: 5000.0,
+    ..Parameter::quantity("stiffness", "kN/m", "stiffness_kn_m")
 };
 
 const CHANNELS: &[Channel] = &[
@@ -75,15 +67,11 @@ pub static DAMPED: Described = Described {
         HEIGHT,
         STIFFNESS,
         Parameter {
-            name: "damping",
-            unit: "kN s/m",
-            kind: ParameterKind::Other,
-            key: "damping_kn_s_m",
             meaning: "damping force per speed of penetration",
-            null: 0.0,
             typical: 5.0,
             low: 0.0,
             high: 50.0,
+            ..Parameter::quantity("damping", "kN s/m", "damping_kn_s_m")
         },
     ],
     channels: CHANNELS,

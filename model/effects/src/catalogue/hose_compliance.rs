@@ -6,20 +6,16 @@
 
 use hitch_plant::hooks::elements::Hose;
 use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind};
+use hitch_plant::{Channel, Dynamics, Parameter};
 
 use crate::described::Described;
 
 const COMPLIANCE: Parameter = Parameter {
-    name: "compliance",
-    unit: "cm3/bar",
-    kind: ParameterKind::Other,
-    key: "compliance_cm3_bar",
     meaning: "volume of the hoses' expansion per pressure",
-    null: 0.0,
     typical: 0.04,
     low: 0.0,
     high: 1.0,
+    ..Parameter::quantity("compliance", "cm3/bar", "compliance_cm3_bar")
 };
 
 fn m3_pa(cm3_bar: f64) -> f64 {
@@ -48,7 +44,6 @@ pub static ELASTIC: Described = Described {
 
 /// Compliance with creep.
 pub static CREEPING: Described = Described {
-    id: "hose-compliance",
     form: Some("creeping"),
     title: "Compliance of hoses with wall creep",
     equation: "dp/dt = (sum Q - A v - W') / (V/E + (1 - share) C), W' = (share C p - W) / creep",
@@ -66,19 +61,13 @@ pub static CREEPING: Described = Described {
             ..Parameter::ratio("share")
         },
         Parameter {
-            name: "creep",
-            unit: "s",
-            kind: ParameterKind::Time,
-            key: "creep_s",
             meaning: "retardation time of the wall",
-            null: 0.0,
             typical: 0.05,
             low: 0.005,
             high: 1.0,
+            ..Parameter::time("creep", "creep_s")
         },
     ],
-    channels: &[Channel::CylinderPressure],
-    needs: Some(Dynamics::Dynamic),
     attach: |values, _, hooks| {
         let whole_m3_pa = m3_pa(values[0]);
         hooks.hose = Hose {
@@ -87,5 +76,5 @@ pub static CREEPING: Described = Described {
             catching_up_1_s: 1.0 / values[2],
         };
     },
-    ..Described::USUAL
+    ..ELASTIC
 };

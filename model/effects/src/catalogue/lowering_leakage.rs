@@ -7,26 +7,12 @@
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::EffectHooks;
-use hitch_plant::{Channel, Parameter, ParameterKind, units};
+use hitch_plant::{Channel, Parameter, units};
 
 use crate::described::Described;
 
 /// Temperature at which the conductance of a constant gap is specified, degree Celsius.
 const SPECIFIED_AT_C: f64 = 40.0;
-
-const PARAMETERS: &[Parameter] = &[Parameter {
-    name: "conductance",
-    unit: "l/min/bar",
-    kind: ParameterKind::Other,
-    key: "conductance_lpm_per_bar",
-    meaning: "leakage flow per cylinder pressure, with oil at 40 degC",
-    null: 0.0,
-    typical: 0.002,
-    low: 0.0,
-    high: 0.1,
-}];
-
-const CHANNELS: &[Channel] = &[Channel::RockerAngle];
 
 /// Leakage independent of temperature.
 pub static EVEN: Described = Described {
@@ -35,28 +21,31 @@ pub static EVEN: Described = Described {
     equation: "Q_leak = conductance * p_C",
     source: "laminar gap, Merritt 3.3; worn load-holding valves",
     shows: "the hitch sinks while holding, faster under heavy loads; little else",
-    parameters: PARAMETERS,
-    channels: CHANNELS,
+    parameters: &[Parameter {
+        meaning: "leakage flow per cylinder pressure, with oil at 40 degC",
+        typical: 0.002,
+        low: 0.0,
+        high: 0.1,
+        ..Parameter::quantity("conductance", "l/min/bar", "conductance_lpm_per_bar")
+    }],
+    channels: &[Channel::RockerAngle],
     attach: |values, _, hooks| leak(values[0], hooks),
     ..Described::USUAL
 };
 
 /// Leakage proportional to the oil's fluidity.
 pub static THINNING: Described = Described {
-    id: "lowering-leakage",
     form: Some("thinning"),
     title: "Leakage of the load-holding valves, viscosity-dependent",
     equation: "Q_leak = conductance nu(40 C) / nu(T) p_C",
     source: "laminar gap of constant width, Merritt 3.3: G is proportional to 1 / mu",
     shows: "the hitch sinks while holding, faster under heavy loads and with hot oil; little else",
-    parameters: PARAMETERS,
-    channels: CHANNELS,
     attach: |values, conditions, hooks| {
         let fluidity =
             viscosity_m2_s(SPECIFIED_AT_C) / viscosity_m2_s(conditions.oil_temperature_c);
         leak(values[0] * fluidity, hooks);
     },
-    ..Described::USUAL
+    ..EVEN
 };
 
 fn leak(conductance_lpm_bar: f64, hooks: &mut EffectHooks) {

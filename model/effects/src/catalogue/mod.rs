@@ -62,7 +62,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &flow_scale::LIFT_UNEVEN,
     &flow_scale::LOWERING,
     &flow_scale::LOWERING_UNEVEN,
-    &solenoid_hysteresis::SolenoidHysteresis,
+    &solenoid_hysteresis::SOLENOID_HYSTERESIS,
     &spool_stiction::STICKING,
     &spool_stiction::FOLLOWING,
     &spool_lag::CREEPING,

@@ -39,15 +39,11 @@ pub static SERIES: Described = Described {
             ..Parameter::ratio("share")
         },
         Parameter {
-            name: "fall",
-            unit: "1/K",
-            kind: ParameterKind::Other,
-            key: "fall_1_k",
             meaning: "relative decrease of the viscosity with temperature",
-            null: 0.0,
             typical: 0.042,
             low: 0.02,
             high: 0.08,
+            ..Parameter::quantity("fall", "1/K", "fall_1_k")
         },
     ],
     channels: &[Channel::Flow, Channel::RockerAngle],
@@ -66,7 +62,6 @@ fn attach_series(values: &[f64], conditions: RunConditions<'_>, hooks: &mut Effe
 
 /// Transition from laminar to turbulent flow in both valves.
 pub static FLOW_NUMBER: Described = Described {
-    id: "oil-viscosity",
     form: Some("flow-number"),
     title: "Transition from laminar to turbulent flow in both valves",
     equation: "Q = Q_table(I) tanh(2 lambda / critical), lambda = 2 (4 mm/A) (I - I_0) sqrt(2 dp / rho) / nu(T)",
@@ -85,9 +80,8 @@ pub static FLOW_NUMBER: Described = Described {
         low: 0.0,
         high: 1000.0,
     }],
-    channels: &[Channel::Flow, Channel::RockerAngle],
     attach: attach_flow_number,
-    ..Described::USUAL
+    ..SERIES
 };
 
 fn attach_flow_number(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {

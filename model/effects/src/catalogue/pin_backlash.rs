@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
-use hitch_plant::{Channel, Linkage, Parameter, ParameterKind, Reading};
+use hitch_plant::{Channel, Linkage, Parameter, Reading};
 
 use crate::described::Described;
 
@@ -20,15 +20,11 @@ pub static PIN_BACKLASH: Described = Described {
     shows: "the angle stays constant for the first millimetres after every reversal while oil flows; lifting \
          and lowering differ by a constant angle",
     parameters: &[Parameter {
-        name: "width",
-        unit: "mm",
-        kind: ParameterKind::Other,
-        key: "width_mm",
         meaning: "full width of the play at the piston",
-        null: 0.0,
         typical: 1.0,
         low: 0.0,
         high: 20.0,
+        ..Parameter::quantity("width", "mm", "width_mm")
     }],
     channels: &[Channel::RockerAngle],
     attach,

@@ -3,7 +3,7 @@
 //! `y = p + o`; 0.25 to 1 % of a full scale of 250 or 350 bar is 0.6 to 3.5 bar, more with temperature.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
-use hitch_plant::{Channel, Parameter, ParameterKind, Reading};
+use hitch_plant::{Channel, Parameter, Reading};
 
 use crate::described::Described;
 
@@ -16,15 +16,11 @@ pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     shows: "constant deviation of the cylinder pressure while pump pressure and flows fit; in \
          pressure alone easily taken for dead weight",
     parameters: &[Parameter {
-        name: "offset",
-        unit: "bar",
-        kind: ParameterKind::Other,
-        key: "offset_bar",
         meaning: "offset of the reading",
-        null: 0.0,
         typical: 0.8,
         low: -20.0,
         high: 20.0,
+        ..Parameter::quantity("offset", "bar", "offset_bar")
     }],
     channels: &[Channel::CylinderPressure],
     attach,

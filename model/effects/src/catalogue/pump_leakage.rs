@@ -5,7 +5,7 @@
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
-use hitch_plant::{Channel, Parameter, ParameterKind};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
@@ -18,15 +18,11 @@ pub static PUMP_LEAKAGE: Described = Described {
     shows: "lifting fast against high pressure, where demand exceeds delivery; invisible while the \
          compensator has flow to spare",
     parameters: &[Parameter {
-        name: "slip",
-        unit: "l/min/bar",
-        kind: ParameterKind::Other,
-        key: "slip_lpm_bar",
         meaning: "flow lost per bar of pump pressure",
-        null: 0.0,
         typical: 0.1,
         low: 0.0,
         high: 0.5,
+        ..Parameter::quantity("slip", "l/min/bar", "slip_lpm_bar")
     }],
     channels: &[Channel::PumpPressure, Channel::Flow],
     attach,

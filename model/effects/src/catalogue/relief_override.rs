@@ -8,7 +8,7 @@
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::hooks::elements::ReliefOverride;
 use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Parameter, ParameterKind};
+use hitch_plant::{Channel, Parameter};
 
 use crate::described::Described;
 
@@ -23,15 +23,11 @@ pub static RELIEF_OVERRIDE: Described = Described {
          stroke: only there does the relief valve work",
     parameters: &[
         Parameter {
-            name: "override",
-            unit: "bar",
-            kind: ParameterKind::Other,
-            key: "override_bar",
             meaning: "increase of the pump pressure from cracking to the pump's full flow",
-            null: 0.0,
             typical: 15.0,
             low: 0.0,
             high: 60.0,
+            ..Parameter::quantity("override", "bar", "override_bar")
         },
         Parameter {
             meaning: "share of it above the setting",

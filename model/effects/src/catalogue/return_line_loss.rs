@@ -6,7 +6,7 @@
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::EffectHooks;
-use hitch_plant::{Channel, Parameter, ParameterKind, units};
+use hitch_plant::{Channel, Parameter, units};
 
 use crate::described::Described;
 
@@ -17,15 +17,11 @@ const REFERENCE_FLOW_LPM: f64 = 40.0;
 const REFERENCE_C: f64 = 40.0;
 
 const LOSS: Parameter = Parameter {
-    name: "loss",
-    unit: "bar",
-    kind: ParameterKind::Other,
-    key: "loss_bar",
     meaning: "back pressure at 40 l/min and 40 degC",
-    null: 0.0,
     typical: 1.0,
     low: 0.0,
     high: 20.0,
+    ..Parameter::quantity("loss", "bar", "loss_bar")
 };
 
 /// Turbulent back pressure of the return line.

@@ -4,66 +4,35 @@
 //! current the flow follows two branches at a distance H, with the data sheet's curve midway (Visintin; Jelali & Kroll,
 //! ch. 4). H is 3 to 6 % of 3.3 A with dither, 8 to 12 % on plain direct current.
 
-use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
-use hitch_plant::{Channel, Currents, Effect, Parameter, ParameterKind};
+use hitch_plant::hooks::effect_hooks::CurrentStage;
+use hitch_plant::{Channel, Currents, Parameter};
+
+use crate::described::Described;
 
 /// Hysteresis of both solenoids.
-#[derive(Debug)]
-pub struct SolenoidHysteresis;
-
-static PARAMETERS: [Parameter; 1] = [Parameter {
-    name: "width",
-    unit: "A",
-    kind: ParameterKind::Current,
-    key: "width_a",
-    meaning: "distance of the rising from the falling branch",
-    null: 0.0,
-    typical: 0.12,
-    low: 0.0,
-    high: 0.8,
-}];
-
-impl Effect for SolenoidHysteresis {
-    fn id(&self) -> &'static str {
-        "solenoid-hysteresis"
-    }
-
-    fn rank(&self) -> usize {
-        crate::order::rank(self.id())
-    }
-
-    fn title(&self) -> &'static str {
-        "Hysteresis of the solenoids"
-    }
-
-    fn equation(&self) -> &'static str {
-        "w = clamp(w_before, I - width/2, I + width/2); Q = Q_table(w)"
-    }
-
-    fn source(&self) -> &'static str {
-        "play operator, Visintin; Jelali & Kroll ch. 4; 0.10 to 0.20 A with dither, 0.25 to 0.4 A on plain DC"
-    }
-
-    fn shows(&self) -> &'static str {
-        "a loop in flow over a triangular current; after a step down more flow than after a step up; with steps from \
-         zero alone easily taken for a shifted threshold"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
-    }
-
-    fn channels(&self) -> &'static [Channel] {
-        &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle]
-    }
-
-    fn attach(&self, values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
+pub static SOLENOID_HYSTERESIS: Described = Described {
+    id: "solenoid-hysteresis",
+    title: "Hysteresis of the solenoids",
+    equation: "w = clamp(w_before, I - width/2, I + width/2); Q = Q_table(w)",
+    source: "play operator, Visintin; Jelali & Kroll ch. 4; 0.10 to 0.20 A with dither, 0.25 to 0.4 A on plain DC",
+    shows: "a loop in flow over a triangular current; after a step down more flow than after a step up; with steps from \
+         zero alone easily taken for a shifted threshold",
+    parameters: &[Parameter {
+        meaning: "distance of the rising from the falling branch",
+        typical: 0.12,
+        low: 0.0,
+        high: 0.8,
+        ..Parameter::current("width", "width_a")
+    }],
+    channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
+    attach: |values, _, hooks| {
         hooks.currents.push(Box::new(Play {
             half_width_a: 0.5 * values[0],
             spool: Currents::default(),
         }));
-    }
-}
+    },
+    ..Described::USUAL
+};
 
 /// Play operator on both currents.
 #[derive(Debug, Clone)]

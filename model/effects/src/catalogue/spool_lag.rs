@@ -8,11 +8,9 @@
 
 use hitch_plant::components::lag::Lag;
 use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
-use hitch_plant::{Channel, Currents, Parameter, ParameterKind};
+use hitch_plant::{Channel, Currents, Parameter};
 
 use crate::described::Described;
-
-const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
 
 /// Spools without overshoot.
 pub static CREEPING: Described = Described {
@@ -25,15 +23,11 @@ pub static CREEPING: Described = Described {
          load; a shifted clock shifts every channel alike",
     parameters: &[
         Parameter {
-            name: "lag",
-            unit: "s",
-            kind: ParameterKind::Time,
-            key: "lag_s",
             meaning: "sum of the two time constants",
-            null: 0.0,
             typical: 0.05,
             low: -0.1,
             high: 1.0,
+            ..Parameter::time("lag", "lag_s")
         },
         Parameter {
             meaning: "share of the lag in the second stage",
@@ -43,14 +37,13 @@ pub static CREEPING: Described = Described {
             ..Parameter::ratio("share")
         },
     ],
-    channels: CHANNELS,
+    channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
     attach: attach_creeping,
     ..Described::USUAL
 };
 
 /// Spools with overshoot.
 pub static SWINGING: Described = Described {
-    id: "spool-lag",
     form: Some("swinging"),
     title: "Lag of the spools, underdamped",
     equation: "(lag / 2 damping)^2 w'' + lag w' + w = I; Q = Q_table(w)",
@@ -60,15 +53,11 @@ pub static SWINGING: Described = Described {
          load, and overshoot a little",
     parameters: &[
         Parameter {
-            name: "lag",
-            unit: "s",
-            kind: ParameterKind::Time,
-            key: "lag_s",
             meaning: "delay behind a ramp of the current",
-            null: 0.0,
             typical: 0.05,
             low: 0.0,
             high: 1.0,
+            ..Parameter::time("lag", "lag_s")
         },
         Parameter {
             meaning: "damping ratio of the spool",
@@ -79,9 +68,8 @@ pub static SWINGING: Described = Described {
             ..Parameter::ratio("damping")
         },
     ],
-    channels: CHANNELS,
     attach: attach_swinging,
-    ..Described::USUAL
+    ..CREEPING
 };
 
 fn attach_swinging(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {

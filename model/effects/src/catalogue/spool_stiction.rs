@@ -6,7 +6,7 @@
 //! remaining band, until the current reverses or stops (Choudhury, Thornhill and Shah 2005).
 
 use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks};
-use hitch_plant::{Channel, Currents, Parameter, ParameterKind, SizeResponse, Valve};
+use hitch_plant::{Channel, Currents, Parameter, SizeResponse, Valve};
 
 use crate::described::Described;
 
@@ -17,30 +17,6 @@ const CHANGE_A: f64 = 0.002;
 /// Rate of change below which a current counts as constant, A/s: plateaus of a conditioned record stay below it.
 const STILL_A_S: f64 = 0.005;
 
-const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "band",
-        unit: "A",
-        kind: ParameterKind::Current,
-        key: "band_a",
-        meaning: "change of current that a sticking spool does not follow",
-        null: 0.0,
-        typical: 0.08,
-        low: 0.0,
-        high: 0.5,
-    },
-    Parameter {
-        meaning: "share of the band that it recovers in one jump",
-        null: 0.5,
-        typical: 0.9,
-        low: 0.5,
-        high: 1.0,
-        ..Parameter::ratio("jump")
-    },
-];
-
-const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
-
 /// Spools that stick again after every jump.
 pub static STICKING: Described = Described {
     id: "spool-stiction",
@@ -49,8 +25,24 @@ pub static STICKING: Described = Described {
     source: "Kano et al. 2004; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on plain DC",
     shows: "a slow ramp of current gives plateaus and jumps of flow; small reversals change nothing; \
          with steps alone indistinguishable from hysteresis",
-    parameters: PARAMETERS,
-    channels: CHANNELS,
+    parameters: &[
+        Parameter {
+            meaning: "change of current that a sticking spool does not follow",
+            typical: 0.08,
+            low: 0.0,
+            high: 0.5,
+            ..Parameter::current("band", "band_a")
+        },
+        Parameter {
+            meaning: "share of the band that it recovers in one jump",
+            null: 0.5,
+            typical: 0.9,
+            low: 0.5,
+            high: 1.0,
+            ..Parameter::ratio("jump")
+        },
+    ],
+    channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
     size_response: SizeResponse::Switching,
     attach: |values, _, hooks| attach(values, hooks, Jumping::default()),
     ..Described::USUAL
@@ -58,7 +50,6 @@ pub static STICKING: Described = Described {
 
 /// Spools that follow the current after breaking loose.
 pub static FOLLOWING: Described = Described {
-    id: "spool-stiction",
     form: Some("following"),
     title: "Stiction of the spools, with free motion after breakaway",
     equation: "stuck at I_0 until |I - I_0| > band; then w = I - sign(dI/dt) (1 - jump) band / 2 until \
@@ -66,11 +57,9 @@ pub static FOLLOWING: Described = Described {
     source: "Choudhury, Thornhill & Shah 2005; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on plain DC",
     shows: "a slow ramp of current starts late and with a jump, a staircase gives plateaus and jumps; \
          small reversals change nothing; with steps alone indistinguishable from hysteresis",
-    parameters: PARAMETERS,
-    channels: CHANNELS,
     size_response: SizeResponse::Stepped,
     attach: |values, _, hooks| attach(values, hooks, Following::default()),
-    ..Described::USUAL
+    ..STICKING
 };
 
 /// Attaches a type of spool to both valves.

@@ -5,7 +5,7 @@
 //! mm/s.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
-use hitch_plant::{Channel, Parameter, ParameterKind};
+use hitch_plant::{Channel, Parameter};
 
 use crate::catalogue::coulomb_friction::TRANSITION_SPEED_M_S;
 use crate::described::Described;
@@ -20,15 +20,11 @@ pub static STRIBECK_FRICTION: Described = Described {
     shows: "cylinder pressure at creeping speed: higher steps at every start and stop than at speed",
     parameters: &[
         Parameter {
-            name: "force",
-            unit: "N",
-            kind: ParameterKind::Other,
-            key: "force_n",
             meaning: "friction while sliding",
-            null: 0.0,
             typical: 200.0,
             low: 0.0,
             high: 5000.0,
+            ..Parameter::quantity("force", "N", "force_n")
         },
         Parameter {
             meaning: "breakaway friction relative to sliding friction",
@@ -39,15 +35,11 @@ pub static STRIBECK_FRICTION: Described = Described {
             ..Parameter::ratio("breakaway")
         },
         Parameter {
-            name: "speed",
-            unit: "mm/s",
-            kind: ParameterKind::Other,
-            key: "speed_mm_s",
             meaning: "speed over which it decreases to sliding friction",
-            null: 0.0,
             typical: 10.0,
             low: 2.0,
             high: 60.0,
+            ..Parameter::quantity("speed", "mm/s", "speed_mm_s")
         },
     ],
     channels: &[Channel::CylinderPressure, Channel::RockerAngle],

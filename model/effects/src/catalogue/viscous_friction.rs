@@ -7,7 +7,7 @@
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::EffectHooks;
-use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind};
+use hitch_plant::{Channel, Dynamics, Parameter};
 
 use crate::described::Described;
 
@@ -15,15 +15,11 @@ use crate::described::Described;
 const SPECIFIED_AT_C: f64 = 40.0;
 
 const COEFFICIENT: Parameter = Parameter {
-    name: "coefficient",
-    unit: "N s/m",
-    kind: ParameterKind::Other,
-    key: "coefficient_n_s_m",
     meaning: "force per speed, with oil at 40 degC",
-    null: 0.0,
     typical: 3000.0,
     low: 0.0,
     high: 100000.0,
+    ..Parameter::quantity("coefficient", "N s/m", "coefficient_n_s_m")
 };
 
 /// Viscous friction independent of temperature.
@@ -51,7 +47,6 @@ pub static EVEN: Described = Described {
 
 /// Viscous friction that depends on the oil's viscosity.
 pub static THICKENING: Described = Described {
-    id: "viscous-friction",
     form: Some("thickening"),
     title: "Viscous friction at the piston, viscosity-dependent",
     equation: "F = coefficient (nu(T) / nu(40 C))^exponent v",
@@ -68,13 +63,12 @@ pub static THICKENING: Described = Described {
             ..Parameter::ratio("exponent")
         },
     ],
-    channels: &Channel::ALL,
     attach: |values, conditions, hooks| {
         let thickness =
             viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(SPECIFIED_AT_C);
         oppose(values[0] * thickness.powf(values[1]), hooks);
     },
-    ..Described::USUAL
+    ..EVEN
 };
 
 fn oppose(coefficient_n_s_m: f64, hooks: &mut EffectHooks) {

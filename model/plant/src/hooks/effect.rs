@@ -47,20 +47,47 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// A ratio that is off at zero, without text and range.
-    #[must_use]
-    pub const fn ratio(name: &'static str) -> Self {
+    const fn of(
+        kind: ParameterKind,
+        name: &'static str,
+        unit: &'static str,
+        key: &'static str,
+    ) -> Self {
         Self {
             name,
-            unit: "",
-            kind: ParameterKind::Ratio,
-            key: name,
+            unit,
+            kind,
+            key,
             meaning: "",
             null: 0.0,
             typical: 0.0,
             low: 0.0,
             high: 0.0,
         }
+    }
+
+    /// A ratio that is off at zero, without text and range.
+    #[must_use]
+    pub const fn ratio(name: &'static str) -> Self {
+        Self::of(ParameterKind::Ratio, name, "", name)
+    }
+
+    /// The same of a time, s.
+    #[must_use]
+    pub const fn time(name: &'static str, key: &'static str) -> Self {
+        Self::of(ParameterKind::Time, name, "s", key)
+    }
+
+    /// The same of a coil current, A.
+    #[must_use]
+    pub const fn current(name: &'static str, key: &'static str) -> Self {
+        Self::of(ParameterKind::Current, name, "A", key)
+    }
+
+    /// The same of any other quantity with its unit.
+    #[must_use]
+    pub const fn quantity(name: &'static str, unit: &'static str, key: &'static str) -> Self {
+        Self::of(ParameterKind::Other, name, unit, key)
     }
 
     /// Whether a value is at an end of the range other than the null value.
