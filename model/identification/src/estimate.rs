@@ -95,10 +95,11 @@ impl Estimate {
     /// The model with these effects, and with the constants of this estimate.
     #[must_use]
     pub fn applied_to(&self, model: &Model) -> Model {
-        let corrected = self.constants.as_ref().map(FreeConstants::corrected);
-        corrected
-            .unwrap_or(model)
-            .with_effects(self.effects.clone())
+        let effects = self.effects.clone();
+        match &self.constants {
+            Some(constants) => constants.corrected(effects),
+            None => model.with_effects(effects),
+        }
     }
 
     /// The same estimate with all constants of a model free. One sigma of their prior is this share of their tolerances.
@@ -108,6 +109,12 @@ impl Estimate {
         let constants = constants.unwrap_or_else(|| FreeConstants::of(model));
         self.constants = Some(constants.within(share));
         self
+    }
+
+    /// The same estimate with other constants.
+    #[must_use]
+    pub fn with_constants(self, constants: Option<FreeConstants>) -> Self {
+        Self { constants, ..self }
     }
 
     /// The same estimate with its constants held in a fit or free.

@@ -5,15 +5,22 @@ use nalgebra::DVector;
 
 use crate::constants::parameter::Parameter;
 
-/// The declared model with corrections applied. Flow curves stay monotone. `None` if the dimensions make no linkage.
+/// The declared model with its constants corrected. Flow curves stay monotone. `None` if the dimensions make no linkage.
 pub fn corrected(
     declared: &Model,
     parameters: &[Parameter],
     theta: &DVector<f64>,
 ) -> Option<Model> {
     let constants = corrected_constants(declared.constants(), parameters, theta);
-    let model = declared.with_constants(constants).ok()?;
-    let mut effects = model.effects.clone();
+    declared.with_constants(constants).ok()
+}
+
+/// Effects with the errors of the sensors.
+pub fn with_sensor_errors(
+    mut effects: Vec<AddedEffect>,
+    parameters: &[Parameter],
+    theta: &DVector<f64>,
+) -> Vec<AddedEffect> {
     for (parameter, &value) in parameters.iter().zip(theta.iter()) {
         if let Parameter::Sensor(sensor) = parameter
             && value != 0.0
@@ -21,7 +28,7 @@ pub fn corrected(
             add_sensor_error(&mut effects, sensor.effect, value);
         }
     }
-    Some(model.with_effects(effects))
+    effects
 }
 
 /// Adds an error of a sensor to the declared one, or to none.

@@ -1,17 +1,20 @@
 //! Independent directions of the errors of all constants.
 
-use hitch_plant::{Constants, Model};
+use hitch_plant::Constants;
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
-use crate::constants::correction::corrected;
-use crate::constants::fitted::{CurvePoint, DETERMINED, Fitted, FittedConstant, MODEL_ERROR};
+use crate::constants::fitted::{DETERMINED, MODEL_ERROR, Posterior};
 use crate::constants::parameter::Parameter;
 use crate::constants::prior::Prior;
 use crate::constants::tolerances::Tolerances;
 
-/// Smallest kept variance of a direction, in variances of a single constant. The errors of neighbouring points of a
-/// flow curve are correlated: a curve of any number of points has about five directions above this variance.
-const SMALLEST_VARIANCE: f64 = 0.02;
+/// Variance of the smooth directions. The errors of neighbouring points of a flow curve are correlated: a curve of any number
+/// of points has about five directions above this variance.
+pub const SMOOTH: f64 = 0.02;
+
+/// Part of a unit vector that is rounding.
+const NEGLIGIBLE: f64 = 1e-9;
 
 /// Principal directions of the prior of a model's constants.
 #[derive(Debug)]
@@ -23,10 +26,15 @@ pub struct Directions {
 }
 
 impl Directions {
-    /// The directions of a model's constants, with a user's own tolerances.
+    /// The directions of some unknowns of a model with at least this variance, in variances of a single constant; with a
+    /// user's own tolerances.
     #[must_use]
-    pub fn new(declared: &Constants, own: &Tolerances) -> Self {
-        let parameters = own.unknowns(declared);
+    pub fn new(
+        declared: &Constants,
+        parameters: Vec<Parameter>,
+        own: &Tolerances,
+        smallest_variance: f64,
+    ) -> Self {
         let prior = Prior::new(declared, &parameters, own);
         let sigma = DVector::from_column_slice(&prior.sigma);
         let size = parameters.len();
@@ -35,7 +43,7 @@ impl Directions {
         });
         let principal = correlation.symmetric_eigen();
         let mut order: Vec<usize> = (0..size)
-            .filter(|&k| principal.eigenvalues[k] >= SMALLEST_VARIANCE)
+            .filter(|&k| principal.eigenvalues[k] >= smallest_variance)
             .collect();
         order.sort_by(|&a, &b| principal.eigenvalues[b].total_cmp(&principal.eigenvalues[a]));
         let column = |&k: &usize| {
@@ -66,68 +74,94 @@ impl Directions {
         self.len() == 0
     }
 
+    /// The unknowns.
+    #[must_use]
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// Their prior.
+    #[must_use]
+    pub fn prior(&self) -> &Prior {
+        &self.prior
+    }
+
     /// Errors of the parameters at these numbers of sigmas along the directions.
-    fn errors(&self, sigmas: &[f64]) -> DVector<f64> {
+    pub(crate) fn errors(&self, sigmas: &[f64]) -> DVector<f64> {
         &self.columns * DVector::from_column_slice(sigmas)
     }
 
-    /// Constants and points of the flow curves of the second model, the first one corrected, with intervals from the
-    /// covariance of the directions, in tolerances; one sigma of the prior is this share of a tolerance.
-    pub(crate) fn fitted(
-        &self,
-        [declared, model]: [&Model; 2],
-        errors: &[f64],
-        share: f64,
-        covariance: &DMatrix<f64>,
-    ) -> (Vec<FittedConstant>, Vec<CurvePoint>) {
+    /// Posterior of each unknown, from the covariance of the directions, in tolerances; one sigma of the prior is this share
+    /// of a tolerance.
+    pub(crate) fn posterior(&self, share: f64, covariance: &DMatrix<f64>) -> Vec<Posterior> {
         let prior = &self.prior;
         let spread = &self.columns * covariance * self.columns.transpose();
         let own: Vec<f64> = (0..prior.sigma.len())
             .map(|k| spread[(k, k)].sqrt().hypot(MODEL_ERROR))
             .collect();
         let pairs = own.iter().zip(&prior.sigma);
-        let determined: Vec<bool> = pairs
-            .clone()
-            .map(|(own, prior)| *own <= DETERMINED * (share * prior).hypot(MODEL_ERROR))
-            .collect();
-        let sigma: Vec<f64> = pairs
-            .zip(&determined)
-            .map(|((own, prior), is_determined)| match is_determined {
-                true => own.min(*prior),
-                false => *prior,
+        pairs
+            .map(|(&own, &prior)| {
+                let determined = own <= DETERMINED * (share * prior).hypot(MODEL_ERROR);
+                let sigma = if determined { own.min(prior) } else { prior };
+                Posterior { sigma, determined }
             })
-            .collect();
-        let fitted = Fitted {
-            declared,
-            model,
-            parameters: &self.parameters,
-            theta: &self.errors(errors),
-            sigma: &sigma,
-            determined: &determined,
-            prior,
-        };
-        (fitted.constants(), fitted.curves())
+            .collect()
     }
 
-    /// The declared model with its constants moved along the directions by these numbers of sigmas; `None` if the
-    /// dimensions make no linkage.
-    #[must_use]
-    pub fn corrected(&self, declared: &Model, sigmas: &[f64]) -> Option<Model> {
-        let errors = self.errors(sigmas);
-        corrected(declared, &self.parameters, &errors)
+    /// Columns per prior sigma of each direction, from those per tolerance of each unknown; `None` if it cannot move. One sigma
+    /// of the prior is this share of a tolerance.
+    pub(crate) fn combined(
+        &self,
+        of_unknowns: &[Option<Vec<Vec<f64>>>],
+        share: f64,
+    ) -> Vec<Vec<Vec<f64>>> {
+        let known = of_unknowns.iter().flatten().next();
+        let zero: Vec<Vec<f64>> = known.map_or(Vec::new(), |column| {
+            column.iter().map(|run| vec![0.0; run.len()]).collect()
+        });
+        let along = |direction: usize| {
+            let mut sum = zero.clone();
+            for (unknown, column) in of_unknowns.iter().enumerate() {
+                let weight = share * self.columns[(unknown, direction)] / self.prior.sigma[unknown];
+                if let Some(column) = column
+                    && weight.abs() > NEGLIGIBLE
+                {
+                    let sums = sum.iter_mut().flatten();
+                    for (sum, part) in sums.zip(column.iter().flatten()) {
+                        *sum += weight * part;
+                    }
+                }
+            }
+            sum
+        };
+        (0..self.len()).into_par_iter().map(along).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Directions;
+    use hitch_plant::Model;
+
+    use super::{Directions, SMOOTH};
+    use crate::constants::correction::corrected;
     use crate::constants::tolerances::Tolerances;
+
+    fn of(model: &Model) -> Directions {
+        let own = Tolerances::default();
+        Directions::new(
+            model.constants(),
+            own.unknowns(model.constants()),
+            &own,
+            SMOOTH,
+        )
+    }
 
     /// The directions reproduce the prior covariance up to the small variances that are left out.
     #[test]
     fn directions_reproduce_the_prior() {
         for model in [hitch_model_file::nominal(), hitch_model_file::dynamic()] {
-            let directions = Directions::new(model.constants(), &Tolerances::default());
+            let directions = of(&model);
             let prior = &directions.prior;
             let product = &directions.columns * directions.columns.transpose();
             println!("{} directions of {}", directions.len(), prior.sigma.len());
@@ -147,8 +181,9 @@ mod tests {
     #[test]
     fn no_error_leaves_the_constants_alone() {
         let model = hitch_model_file::nominal();
-        let directions = Directions::new(model.constants(), &Tolerances::default());
-        let same = directions.corrected(&model, &vec![0.0; directions.len()]);
+        let directions = of(&model);
+        let errors = directions.errors(&vec![0.0; directions.len()]);
+        let same = corrected(&model, directions.parameters(), &errors);
         assert_eq!(same.expect("a linkage").constants(), model.constants());
     }
 }

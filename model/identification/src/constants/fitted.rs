@@ -54,14 +54,22 @@ pub struct CurvePoint {
     pub determined: bool,
 }
 
+/// What is known of an unknown after a fit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Posterior {
+    /// One sigma.
+    pub sigma: f64,
+    /// Whether the campaign determines it.
+    pub determined: bool,
+}
+
 /// Corrections of the constants of a model.
 pub(crate) struct Fitted<'a> {
     pub declared: &'a Model,
     pub model: &'a Model,
     pub parameters: &'a [Parameter],
     pub theta: &'a DVector<f64>,
-    pub sigma: &'a [f64],
-    pub determined: &'a [bool],
+    pub posterior: &'a [Posterior],
     pub prior: &'a Prior,
 }
 
@@ -74,7 +82,7 @@ impl Fitted<'_> {
     }
 
     fn constant(&self, k: usize, parameter: &Parameter) -> Option<FittedConstant> {
-        let (value, half) = (self.theta[k], INTERVAL * self.sigma[k]);
+        let (value, half) = (self.theta[k], INTERVAL * self.posterior[k].sigma);
         let mut tolerance = self.prior.sigma[k];
         let (name, unit, declared, at): (_, _, _, Box<dyn Fn(f64) -> f64>) = match parameter {
             Parameter::Scalar(constant, _) => {
@@ -116,7 +124,7 @@ impl Fitted<'_> {
             fitted: at(value),
             tolerance,
             interval: (at(value - half), at(value + half)),
-            determined: self.determined[k],
+            determined: self.posterior[k].determined,
             at_an_end: self.prior.is_at_an_end(self.theta, k),
         })
     }
@@ -135,14 +143,14 @@ impl Fitted<'_> {
         let curve = |model: &Model| valve.of(model.constants()).curve.clone();
         let (declared, fitted) = (curve(self.declared), curve(self.model));
         let fitted_lpm = lpm_from_m3_s(fitted.flows_m3_s()[point]);
-        let factor = (INTERVAL * self.sigma[k]).exp();
+        let factor = (INTERVAL * self.posterior[k].sigma).exp();
         CurvePoint {
             valve,
             current_a: fitted.currents_a()[point],
             declared_lpm: lpm_from_m3_s(declared.flows_m3_s()[point]),
             fitted_lpm,
             interval_lpm: (fitted_lpm / factor, fitted_lpm * factor),
-            determined: self.determined[k],
+            determined: self.posterior[k].determined,
         }
     }
 }

@@ -48,12 +48,6 @@ impl Parameter {
         !matches!(self, Self::Scalar(_, tolerance) if tolerance.role == Role::Inseparable)
     }
 
-    /// Whether it is an error of a sensor.
-    #[must_use]
-    pub fn is_sensor(&self) -> bool {
-        matches!(self, Self::Sensor(_))
-    }
-
     /// Its name in a model file, `table.key`; `None` for a sensor, which is an effect.
     #[must_use]
     pub fn name(&self) -> Option<String> {
@@ -63,12 +57,6 @@ impl Parameter {
             Self::Flow(valve, _) => Some(format!("{}.flow_lpm", valve.key())),
             Self::Sensor(_) => None,
         }
-    }
-
-    /// Whether it belongs to a flow curve.
-    #[must_use]
-    pub fn is_flow(&self) -> bool {
-        matches!(self, Self::Flow(..))
     }
 }
 

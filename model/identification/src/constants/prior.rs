@@ -23,10 +23,8 @@ const SINGLE: f64 = 0.02;
 pub struct Prior {
     /// One sigma of each unknown.
     pub sigma: Vec<f64>,
-    /// The covariance.
+    /// Their covariance.
     pub covariance: DMatrix<f64>,
-    /// Inverse of the covariance.
-    pub precision: DMatrix<f64>,
 }
 
 impl Prior {
@@ -39,33 +37,7 @@ impl Prior {
             factors[i] * factors[j] * covariance(declared, parameters[i], parameters[j], i == j)
         });
         let sigma = (0..size).map(|k| covariance[(k, k)].sqrt()).collect();
-        let root = covariance.clone().cholesky();
-        let precision = root.map_or_else(|| DMatrix::identity(size, size), |root| root.inverse());
-        Self {
-            sigma,
-            covariance,
-            precision,
-        }
-    }
-
-    /// The precision with the tolerances of all unknowns but one, which is uncorrelated, multiplied by `times`.
-    pub fn widened(&self, times: f64, unknown: usize) -> DMatrix<f64> {
-        let mut precision = &self.precision / (times * times);
-        precision[(unknown, unknown)] = self.precision[(unknown, unknown)];
-        precision
-    }
-
-    /// Squared distance from the declared values, in sigmas.
-    pub fn cost(&self, theta: &DVector<f64>) -> f64 {
-        theta.dot(&(&self.precision * theta))
-    }
-
-    /// The nearest values within the bounds.
-    pub fn bounded(&self, theta: &DVector<f64>) -> DVector<f64> {
-        DVector::from_fn(theta.len(), |k, _| {
-            let farthest = FARTHEST_SIGMAS * self.sigma[k];
-            theta[k].clamp(-farthest, farthest)
-        })
+        Self { sigma, covariance }
     }
 
     /// Whether an unknown is at its bound.

@@ -151,10 +151,8 @@ mod tests {
             for error in [-100.0, 100.0] {
                 free.set(coordinate, error);
                 let [low, high] = reached;
-                reached = [
-                    low.min(bore_mm(free.corrected())),
-                    high.max(bore_mm(free.corrected())),
-                ];
+                let bore_mm = bore_mm(&free.corrected(Vec::new()));
+                reached = [low.min(bore_mm), high.max(bore_mm)];
                 free.set(coordinate, 0.0);
             }
         }

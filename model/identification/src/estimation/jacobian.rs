@@ -208,7 +208,7 @@ impl Jacobian {
 }
 
 /// Removes an unknown from the normal equations: its step is zero.
-pub(crate) fn hold(matrix: &mut DMatrix<f64>, right: &mut DVector<f64>, unknown: usize) {
+fn hold(matrix: &mut DMatrix<f64>, right: &mut DVector<f64>, unknown: usize) {
     matrix.row_mut(unknown).fill(0.0);
     matrix.column_mut(unknown).fill(0.0);
     matrix[(unknown, unknown)] = 1.0;

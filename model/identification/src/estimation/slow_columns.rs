@@ -4,21 +4,20 @@ use hitch_plant::Channel;
 use hitch_plant::simulation::Trace;
 use rayon::prelude::*;
 
+use crate::constants::free::FreeConstants;
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
 use crate::data::experiment::Experiment;
 use crate::data::nuisance::CurrentShift;
 use crate::data::problem::Problem;
-use crate::estimate::{Estimate, Shared};
-use crate::estimation::residual_columns::{
-    central_quotients, dot, huber, huber_residuals, quotient,
-};
+use crate::estimate::Estimate;
+use crate::estimation::residual_columns::{dot, huber, huber_residuals, quotient, quotients};
 use crate::residuals::whitening::Weights;
 
 /// Step of a channel's clock offset, in prior sigmas.
 const STEP_OF_OFFSET: f64 = 0.25;
 
-/// Step of corrections of constants to either side, in tolerances.
-pub(crate) const STEP_OF_CONSTANTS: f64 = 0.02;
+/// Step of a constant to either side, in tolerances.
+const STEP_OF_CONSTANTS: f64 = 0.02;
 
 /// Sensitivities of all runs to their load errors, per step of one prior sigma.
 fn load_columns(
@@ -67,7 +66,7 @@ fn offset_columns(
 /// Sensitivities of one run to the channels' clock offsets, per step of one prior sigma, by channel.
 ///
 /// An offset only shifts a channel of the trace: one simulation serves all four.
-pub(crate) fn offset_columns_of_run(
+fn offset_columns_of_run(
     experiment: &Experiment,
     index: usize,
     weights: &Weights,
@@ -100,18 +99,22 @@ fn constant_columns(
     weights: &Weights,
     estimate: &Estimate,
 ) -> Vec<Vec<Vec<f64>>> {
-    let column = |direction: usize| {
-        let step = STEP_OF_CONSTANTS;
-        central_quotients(
+    let free = estimate.constants.as_ref();
+    let Some(free) = free.filter(|free| free.free() > 0) else {
+        return Vec::new();
+    };
+    let residuals = |constants: &FreeConstants| {
+        let constants = Some(constants.clone());
+        huber_residuals(
             problem,
             weights,
-            estimate,
-            Shared::Constants(direction),
-            step,
+            &estimate.clone().with_constants(constants),
         )
     };
-    let directions = 0..estimate.constant_directions();
-    directions.into_par_iter().map(column).collect()
+    free.sensitivities(STEP_OF_CONSTANTS, |[down, up], step| {
+        let (below, above) = rayon::join(|| residuals(down), || residuals(up));
+        quotients(&below, above, step)
+    })
 }
 
 /// Columns that hardly change between iterations: those of the clocks, the loads and the free constants.

@@ -36,7 +36,9 @@ impl CorrectedConstants {
     /// free.
     pub(crate) fn new(problem: Problem<'_>, fit: Fit, after: &Fit) -> Option<Self> {
         let covariance = covariance(problem, after)?;
-        let (constants, curves) = after.estimate.constants.as_ref()?.fitted(&covariance);
+        let free = after.estimate.constants.as_ref()?;
+        let (model, errors) = (free.corrected(Vec::new()), free.errors_of_unknowns());
+        let (constants, curves) = free.fitted(&model, errors, &free.posterior(&covariance));
         Some(Self {
             fit,
             constants,
