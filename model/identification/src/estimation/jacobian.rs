@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared, Step};
+use crate::estimation::gram::Gram;
 use crate::estimation::residual_columns::{dot, huber_residuals, quotients, subtract};
 use crate::estimation::slow_columns::SlowColumns;
 use crate::residuals::whitening::Weights;
@@ -114,24 +115,55 @@ impl Jacobian {
         Self { runs, shared }
     }
 
+    /// Gram matrix of shared parameters, by their columns, and of further columns, by run: load errors eliminated run by run,
+    /// priors included, and the first `eliminated` shared parameters eliminated. `residuals` are those of each run.
+    #[must_use]
+    pub fn gram(
+        &self,
+        estimate: &Estimate,
+        (shared, eliminated): (&[usize], usize),
+        further: &[&[Vec<f64>]],
+        residuals: &[&[f64]],
+    ) -> Gram {
+        let of_run = |(index, run): (usize, &RunJacobian)| {
+            let shared = shared.iter().map(|&column| run.shared[column].as_slice());
+            let further = further.iter().map(|column| column[index].as_slice());
+            let columns = shared.chain(further).chain([residuals[index]]);
+            run.products(&columns.collect::<Vec<&[f64]>>())
+        };
+        let runs = self.runs.par_iter().enumerate();
+        let runs: Vec<DMatrix<f64>> = runs.map(of_run).collect();
+        let last = shared.len() + further.len();
+        let mut whole: DMatrix<f64> = DMatrix::zeros(last + 1, last + 1);
+        for run in runs {
+            whole += run;
+        }
+        for (row, &column) in shared.iter().enumerate() {
+            let shared = self.shared[column];
+            if shared.has_prior() {
+                let value = estimate.get(shared) / estimate.scale(shared);
+                whole[(row, row)] += 1.0;
+                whole[(row, last)] -= value;
+                whole[(last, row)] -= value;
+                whole[(last, last)] += value * value;
+            }
+        }
+        Gram::eliminating(whole, eliminated)
+    }
+
     /// Normal matrix and right-hand side of the shared parameters, with the load errors eliminated.
     #[must_use]
     pub fn reduced(&self, estimate: &Estimate) -> (DMatrix<f64>, DVector<f64>) {
-        let size = self.shared.len();
-        let mut matrix = DMatrix::zeros(size, size);
-        let mut right = DVector::zeros(size);
-        for run in &self.runs {
-            let (m, r) = run.reduced(size);
-            matrix += m;
-            right += r;
-        }
-        for (column, &shared) in self.shared.iter().enumerate() {
-            if shared.has_prior() {
-                matrix[(column, column)] += 1.0;
-                right[column] -= estimate.get(shared) / estimate.scale(shared);
-            }
-        }
-        (matrix, right)
+        let all: Vec<usize> = (0..self.shared.len()).collect();
+        let Gram { matrix, pull, .. } = self.gram(estimate, (&all, 0), &[], &self.residuals());
+        (matrix, pull)
+    }
+
+    /// Whitened residuals of each run.
+    #[must_use]
+    pub fn residuals(&self) -> Vec<&[f64]> {
+        let runs = self.runs.iter();
+        runs.map(|run| run.residual.as_slice()).collect()
     }
 
     /// Solution of the damped normal equations with the parameters selected by `held` fixed; `None` if they are
@@ -243,22 +275,24 @@ impl RunJacobian {
             .map_or(0.0, |(_, square, pull)| pull / square)
     }
 
-    fn reduced(&self, size: usize) -> (DMatrix<f64>, DVector<f64>) {
+    /// Dot products of columns, the residuals last, with the load error eliminated.
+    fn products(&self, columns: &[&[f64]]) -> DMatrix<f64> {
+        let size = columns.len();
         let mut matrix = DMatrix::zeros(size, size);
-        for i in 0..size {
-            for j in 0..=i {
-                let value = dot(&self.shared[i], &self.shared[j]);
-                matrix[(i, j)] = value;
-                matrix[(j, i)] = value;
+        for row in 0..size {
+            for column in 0..=row {
+                let product = dot(columns[row], columns[column]);
+                matrix[(row, column)] = product;
+                matrix[(column, row)] = product;
             }
         }
-        let pulls = self.shared.iter().map(|c| dot(c, &self.residual));
-        let mut right = DVector::from_iterator(size, pulls);
-        if let Some((load, square, pull)) = self.load_pull(&self.residual) {
-            let coupling = DVector::from_iterator(size, self.shared.iter().map(|c| dot(c, load)));
+        if let Some(load) = &self.load {
+            let mut coupling = DVector::from_iterator(size, columns.iter().map(|c| dot(c, load)));
+            coupling[size - 1] -= self.load_value;
+            matrix[(size - 1, size - 1)] += self.load_value * self.load_value;
+            let square = dot(load, load) + 1.0;
             matrix -= &coupling * coupling.transpose() / square;
-            right -= &coupling * (pull / square);
         }
-        (matrix, right)
+        matrix
     }
 }

@@ -4,6 +4,7 @@ pub mod bounded_minimum;
 pub(crate) mod central_differences;
 pub(crate) mod clock_synchronisation;
 pub mod fit;
+pub mod gram;
 pub mod jacobian;
 pub mod least_squares;
 pub mod nuisance_projection;

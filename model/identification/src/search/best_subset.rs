@@ -7,8 +7,8 @@ use std::collections::HashSet;
 
 use rayon::prelude::*;
 
+use crate::estimation::gram::Gram;
 use crate::search::dictionary_entry::Entry;
-use crate::search::gram_matrix::Gram;
 
 /// Size up to which all subsets are enumerated.
 const EXACT: usize = 2;

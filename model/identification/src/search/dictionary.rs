@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::data::limit::Limit;
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared};
+use crate::estimation::gram::Gram;
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::residual_columns::{difference, huber, subtract};
@@ -13,7 +14,6 @@ use crate::search::best_subset::Subset;
 use crate::search::candidates::possible;
 use crate::search::coarse_view::Coarse;
 use crate::search::dictionary_entry::{Entry, Kind};
-use crate::search::gram_matrix::Gram;
 use crate::search::scan_cache::Scans;
 use crate::search::screening::Screen;
 use crate::search::secant_ends::LARGEST_SHARE;
@@ -52,7 +52,10 @@ impl Dictionary {
         estimate: &Estimate,
     ) -> Self {
         let nuisances = nuisances(&jacobian);
-        let gram = Gram::new(&jacobian, estimate, &nuisances, &without, &entries);
+        let changes: Vec<&[Vec<f64>]> = entries.iter().map(|entry| &*entry.change).collect();
+        let residuals: Vec<&[f64]> = without.iter().map(Vec::as_slice).collect();
+        let eliminated = (nuisances.as_slice(), nuisances.len());
+        let gram = jacobian.gram(estimate, eliminated, &changes, &residuals);
         Self {
             entries,
             gram,

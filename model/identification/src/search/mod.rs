@@ -7,7 +7,6 @@ pub(crate) mod confounded;
 pub(crate) mod delays;
 pub(crate) mod dictionary;
 pub(crate) mod dictionary_entry;
-pub(crate) mod gram_matrix;
 pub(crate) mod line_search;
 pub mod options;
 pub(crate) mod projections;

@@ -82,7 +82,6 @@ impl Sensitivities {
     /// Precision of the constants with all other parameters eliminated, in units of the prior's, and half of the negative
     /// gradient of the cost along them. Parameters at an end of their range stay there.
     pub fn normal_equations(&self) -> (DMatrix<f64>, DVector<f64>) {
-        let (matrix, right) = self.jacobian.reduced(&self.estimate);
         let columns = 0..self.jacobian.shared.len();
         let (own, others): (Vec<usize>, Vec<usize>) =
             columns.partition(|&column| self.is_constant(column));
@@ -91,7 +90,13 @@ impl Sensitivities {
             !self.estimate.is_at_an_end(shared)
         };
         let others: Vec<usize> = others.into_iter().filter(can_move).collect();
-        eliminated(&matrix, &right, &own, &others)
+        let shared = [others.as_slice(), &own].concat();
+        let (eliminated, residuals) =
+            ((shared.as_slice(), others.len()), self.jacobian.residuals());
+        let gram = self
+            .jacobian
+            .gram(&self.estimate, eliminated, &[], &residuals);
+        (gram.matrix, gram.pull)
     }
 }
 
@@ -107,53 +112,4 @@ fn stretches_of(run: &ReadyRun) -> Vec<Range<usize>> {
         }
     }
     stretches
-}
-
-/// The normal equations of the unknowns `kept`, with `others` eliminated.
-fn eliminated(
-    matrix: &DMatrix<f64>,
-    right: &DVector<f64>,
-    kept: &[usize],
-    others: &[usize],
-) -> (DMatrix<f64>, DVector<f64>) {
-    let part = |rows: &[usize], columns: &[usize]| matrix.select_rows(rows).select_columns(columns);
-    let (own, pull) = (part(kept, kept), right.select_rows(kept));
-    let coupling = part(others, kept);
-    let mut eliminated = part(others, others);
-    for k in 0..others.len() {
-        eliminated[(k, k)] += 1e-9;
-    }
-    match eliminated.cholesky() {
-        Some(root) => {
-            let back = coupling.transpose();
-            let of_others = root.solve(&right.select_rows(others));
-            (own - &back * root.solve(&coupling), pull - back * of_others)
-        }
-        None => (own, pull),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::eliminated;
-    use nalgebra::{DMatrix, DVector};
-
-    /// The determinant of a matrix is that of its eliminated part times that of the complement.
-    #[test]
-    fn determinants_multiply() {
-        let root = DMatrix::from_fn(4, 4, |i, j| match i.cmp(&j) {
-            std::cmp::Ordering::Equal => 2.0 + i as f64,
-            std::cmp::Ordering::Greater => 0.3 * (i + 2 * j) as f64,
-            std::cmp::Ordering::Less => 0.0,
-        });
-        let matrix = &root * root.transpose();
-        let right = DVector::from_fn(4, |i, _| 1.0 - i as f64);
-        let (complement, pull) = eliminated(&matrix, &right, &[0, 2], &[1, 3]);
-        let others = matrix.select_rows(&[1, 3]).select_columns(&[1, 3]);
-        let product = complement.determinant() * others.determinant();
-        assert!((product / matrix.determinant() - 1.0).abs() < 1e-6);
-        let whole = matrix.lu().solve(&right).expect("a regular matrix");
-        let part = complement.lu().solve(&pull).expect("a regular matrix");
-        assert!((part - whole.select_rows(&[0, 2])).norm() < 1e-6);
-    }
 }
