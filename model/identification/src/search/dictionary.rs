@@ -14,7 +14,6 @@ use crate::search::best_subset::Subset;
 use crate::search::candidates::possible;
 use crate::search::coarse_view::Coarse;
 use crate::search::dictionary_entry::{Entry, Kind};
-use crate::search::scan_cache::Scans;
 use crate::search::screening::Screen;
 use crate::search::secant_ends::LARGEST_SHARE;
 use crate::search::shape_starts::scaled;
@@ -94,7 +93,6 @@ pub(crate) struct DictionaryBuilder<'a> {
     pub effects: Vec<&'static dyn Effect>,
     /// Whether the sizes of adopted effects may change.
     pub changes: bool,
-    pub scans: &'a Scans,
     /// Smallest predicted reduction of the cost for which an effect is examined more closely.
     pub worthwhile: f64,
     /// Until when columns are simulated; then the dictionary has those so far.
@@ -155,7 +153,6 @@ impl DictionaryBuilder<'_> {
         Screen {
             problem: problem.within(self.limit),
             coarse: self.coarse,
-            scans: self.scans,
             worthwhile: self.worthwhile,
             here,
             projection: NuisanceProjection::new(jacobian, &self.coarse.seen.estimate, 0..0),

@@ -10,7 +10,6 @@ use crate::estimation::least_squares::Descent;
 use crate::estimation::residual_columns::{huber_residuals, square_sum};
 use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
-use crate::search::delays::with_best_delay_split;
 use crate::search::line_search::line_searched;
 use crate::search::options::Options;
 use crate::search::projections::Projections;
@@ -90,7 +89,7 @@ impl Refits<'_> {
         let coarse_fits: Vec<(f64, Fit)> = nearest
             .filter(|_| !self.options.is_over())
             .map(|start| {
-                let fit = with_best_delay_split(coarse, refine(coarse, start));
+                let fit = refine(coarse, start);
                 let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());
                 let under_present = evaluate_weighted(coarse, estimate, weights).cost;
                 let cost = fit.cost.min(under_present) + self.penalty.of_all(&fit.estimate);
@@ -99,8 +98,7 @@ impl Refits<'_> {
             .collect();
         let likely = self.likely(coarse_fits).into_par_iter();
         let refined = likely.map(|estimate| {
-            let fit = with_best_delay_split(problem, refine(problem, estimate));
-            let fit = self.line_searched(fit);
+            let fit = self.line_searched(refine(problem, estimate));
             progress(&key(&fit).name());
             fit
         });
@@ -142,8 +140,7 @@ impl Refits<'_> {
         let problem = self.coarse.problem;
         let from = |start: Estimate| {
             let found = self.short_fit_from(start);
-            let fit = refine(problem, found.estimate);
-            self.line_searched(with_best_delay_split(problem, fit))
+            self.line_searched(refine(problem, found.estimate))
         };
         let in_step = start.clocks.are_off().then(|| {
             let clocks = Clocks::default();

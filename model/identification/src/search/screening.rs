@@ -14,7 +14,6 @@ use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::residual_columns::{difference, huber_residuals};
 use crate::search::coarse_view::Coarse;
 use crate::search::dictionary_entry::{Entry, Kind};
-use crate::search::scan_cache::Scans;
 use crate::search::secant_ends::{End, best, columns, trusted};
 use crate::search::shape_starts::{scaled, scan_grid, with_extreme_shapes, with_opposite_shapes};
 use crate::search::size_scan::scan;
@@ -47,7 +46,6 @@ pub(crate) struct Screen<'a> {
     /// The experiment for simulations, the condensed one or its version with coarse time steps, and the model.
     pub problem: Problem<'a>,
     pub coarse: &'a Coarse<'a>,
-    pub scans: &'a Scans,
     /// Smallest predicted reduction of the cost for which an effect is examined closely.
     pub worthwhile: f64,
     /// The present residuals, after Huber's loss.
@@ -180,9 +178,7 @@ impl Screen<'_> {
             } else {
                 *problem
             };
-            let look = || scan(runs, present, &hint, grid);
-            let found = self.scans.of(hint.effect, present.cost, look);
-            ends.extend(self.ends(found, false));
+            ends.extend(self.ends(scan(runs, present, &hint, grid), false));
         }
     }
 

@@ -14,7 +14,6 @@ use crate::search::dictionary_entry::Kind;
 use crate::search::options::Options;
 use crate::search::promising_subsets::most_starts;
 use crate::search::refit::Refits;
-use crate::search::scan_cache::Scans;
 use crate::selection::candidate::{Candidate, slow_columns, weigh, weigh_by};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::evidence::shares;
@@ -57,14 +56,12 @@ pub fn try_each(
     weighed: OnWeighed,
 ) -> Vec<Candidate> {
     let Problem { experiment, .. } = problem;
-    let scans = Scans::default();
     let penalty = Penalty::given(experiment, base);
     let coarse = Coarse::new(problem, base);
     let builder = DictionaryBuilder {
         coarse: &coarse,
         effects: effects.to_vec(),
         changes: false,
-        scans: &scans,
         worthwhile: 0.5 * penalty.minimum(),
         limit: problem.limit,
     };

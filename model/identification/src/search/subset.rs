@@ -12,7 +12,7 @@
 
 use std::collections::BTreeMap;
 
-use hitch_plant::Effect;
+use hitch_plant::{Effect, ParameterKind};
 use rayon::prelude::*;
 
 use crate::data::clocks::Clocks;
@@ -26,9 +26,8 @@ use crate::search::dictionary::{Dictionary, DictionaryBuilder};
 use crate::search::options::Options;
 use crate::search::promising_subsets::starts;
 use crate::search::refit::Refits;
-use crate::search::scan_cache::Scans;
+use crate::search::resolution;
 use crate::search::screening::EXPLAINED;
-use crate::search::{delays, resolution};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::hold_out::{HeldOut, held_out};
 use crate::selection::posterior::{Refitted, key, probability_of};
@@ -126,7 +125,6 @@ pub(crate) struct Search<'a> {
     problem: Problem<'a>,
     options: Options<'a>,
     progress: Progress<'a>,
-    scans: Scans,
     refitted: Refitted,
     /// The best fit so far, and its error in held-out runs.
     present: Fit,
@@ -153,7 +151,6 @@ impl<'a> Search<'a> {
             problem,
             options,
             progress,
-            scans: Scans::default(),
             refitted: Refitted::new(base),
             present: base.clone(),
             left: held_out(problem, base),
@@ -246,7 +243,7 @@ impl<'a> Search<'a> {
             && self.refitted.least_error() > EXPLAINED
         {
             let coarse = Coarse::new(self.problem, &in_step);
-            let dictionary = self.builder(&coarse, delays::is_delay).dictionary();
+            let dictionary = self.builder(&coarse, is_delay).dictionary();
             // A set that was fitted with clock offsets may have another local minimum with all clocks in step.
             let known = Refitted::new(present);
             self.fits_subsets_except(&known, &coarse, &dictionary, MORE);
@@ -295,7 +292,6 @@ impl<'a> Search<'a> {
             coarse,
             effects,
             changes: self.options.changes,
-            scans: &self.scans,
             worthwhile: 0.5 * Penalty::given(self.problem.experiment, coarse.present).minimum(),
             // The other half is for the fits of the sets that it leads to.
             limit: self.options.limit.after(0.5),
@@ -372,6 +368,11 @@ fn rivals(present: &Fit, dictionary: &Dictionary) -> Vec<(usize, Vec<&'static st
     let own = present.estimate.changed();
     own.map(|index| (index, confounded(dictionary, index)))
         .collect()
+}
+
+/// Whether an effect delays a channel: its size is a time.
+fn is_delay(effect: &dyn Effect) -> bool {
+    effect.parameters()[0].kind == ParameterKind::Time
 }
 
 /// A fit re-evaluated with all clocks in step, if they are off: clock offsets that compensate for a missing delay hide
