@@ -162,6 +162,12 @@ impl Millisecond {
         self + Self(1)
     }
 
+    /// For how long a condition has held, one controller step later: zero after a step in which it does not hold.
+    #[must_use]
+    pub fn counted_while(self, holds: bool) -> Self {
+        if holds { self.next() } else { Self::ZERO }
+    }
+
     /// This time as a divisor (at least one step).
     #[must_use]
     pub fn divisor(self) -> Divisor {
