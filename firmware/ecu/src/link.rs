@@ -239,9 +239,7 @@ pub fn frame_to_bytes(frame: &Frame) -> [u8; FRAME_BYTES] {
     let (head, data) = bytes.split_at_mut(8);
     let [a, b, c, d] = (id | remote).to_le_bytes();
     head.copy_from_slice(&[a, b, c, d, frame.length(), 0, 0, 0]);
-    for (target, &byte) in data.iter_mut().zip(frame.data()) {
-        *target = byte;
-    }
+    data.copy_from_slice(&frame.padded());
     bytes
 }
 
@@ -256,12 +254,7 @@ pub fn frame_from_bytes(bytes: &[u8; FRAME_BYTES]) -> Option<Frame> {
     } else {
         Id::Standard(StandardId::new(u16::try_from(bits).ok()?)?)
     };
-    let length = usize::from(*length);
-    if word & REMOTE != 0 {
-        Frame::remote_frame(id, length)
-    } else {
-        Frame::data_frame(id, data.get(..length)?)
-    }
+    Frame::from_padded(id, word & REMOTE != 0, *length, *data)
 }
 
 #[cfg(test)]
