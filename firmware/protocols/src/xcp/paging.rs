@@ -1,7 +1,10 @@
 //! Commands that select and copy pages of the calibration: one segment with a working and a reference page.
 
+use hitch_quantities::calibration::CALIBRATION_BYTES;
+
 use super::error::Refusal;
-use super::memory::{Memory, Page};
+use super::map::{CALIBRATION_BASE, EcuMemory};
+use super::memory::Page;
 use super::packet::{Answer, done, response};
 
 const SEGMENTS: u8 = 1;
@@ -13,7 +16,7 @@ const TOOL: u8 = 0x02;
 const ALL: u8 = 0x80;
 
 /// SET_CAL_PAGE: mode, segment, page.
-pub(super) fn set_page(rest: &[u8], memory: &mut impl Memory) -> Answer {
+pub(super) fn set_page(rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
     let [mode, segment, number, ..] = *rest else {
         return Err(Refusal::Syntax);
     };
@@ -29,13 +32,13 @@ pub(super) fn set_page(rest: &[u8], memory: &mut impl Memory) -> Answer {
         memory.set_controller_page(page)?;
     }
     if mode & TOOL != 0 {
-        memory.set_tool_page(page)?;
+        memory.pages.set_tool_page(page);
     }
     done()
 }
 
 /// GET_CAL_PAGE: target, segment.
-pub(super) fn page(rest: &[u8], memory: &impl Memory) -> Answer {
+pub(super) fn page(rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
     let [access, segment, ..] = *rest else {
         return Err(Refusal::Syntax);
     };
@@ -43,8 +46,8 @@ pub(super) fn page(rest: &[u8], memory: &impl Memory) -> Answer {
         return Err(Refusal::SegmentNotValid);
     }
     let page = match access {
-        CONTROLLER => memory.controller_page(),
-        TOOL => memory.tool_page(),
+        CONTROLLER => memory.pages.controller_page(),
+        TOOL => memory.pages.tool_page(),
         _ => return Err(Refusal::ModeNotValid),
     };
     response(&[0, 0, page as u8])
@@ -56,17 +59,16 @@ pub(super) fn info() -> Answer {
 }
 
 /// GET_SEGMENT_INFO: address of the segment, and number of pages.
-pub(super) fn segment_info(rest: &[u8], memory: &impl Memory) -> Answer {
+pub(super) fn segment_info(rest: &[u8]) -> Answer {
     let [mode, segment, info, ..] = *rest else {
         return Err(Refusal::Syntax);
     };
     if segment >= SEGMENTS {
         return Err(Refusal::SegmentNotValid);
     }
-    let (address, length) = memory.segment();
     let basic = match (mode, info) {
-        (0, 0) => address,
-        (0, 1) => length,
+        (0, 0) => CALIBRATION_BASE,
+        (0, 1) => CALIBRATION_BYTES as u32,
         // Nothing is extended, mapped, compressed or encrypted.
         (1, _) => return response(&[PAGES, 0, 0, 0, 0]),
         _ => return Err(Refusal::OutOfRange),
@@ -95,7 +97,7 @@ pub(super) fn page_info(rest: &[u8]) -> Answer {
 }
 
 /// COPY_CAL_PAGE: only from the reference page to the working page.
-pub(super) fn copy(rest: &[u8], memory: &mut impl Memory) -> Answer {
+pub(super) fn copy(rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
     let [from_segment, from, to_segment, to, ..] = *rest else {
         return Err(Refusal::Syntax);
     };

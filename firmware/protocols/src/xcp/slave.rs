@@ -7,7 +7,8 @@ use super::command::{code, event, identifier};
 use super::daq::Daq;
 use super::error::Refusal;
 use super::event::Event;
-use super::memory::{Memory, MemoryRange, Text};
+use super::map::{EcuMemory, text_range};
+use super::memory::{MemoryRange, Text};
 use super::packet::{Answer, MOST_BYTES, Packet, done, packet, response};
 use super::unlocking::{CALIBRATION, Unlocking};
 use super::{checksum, measuring, paging};
@@ -90,7 +91,7 @@ impl Slave {
     }
 
     /// Processes a frame from the bus; other frames than commands to this node are ignored.
-    pub fn receive(&mut self, frame: &Frame, memory: &mut impl Memory, now_us: u32) {
+    pub fn receive(&mut self, frame: &Frame, memory: &mut EcuMemory<'_>, now_us: u32) {
         let Some(id) = frame.extended_data_id().map(Id::unpack) else {
             return;
         };
@@ -113,7 +114,7 @@ impl Slave {
 
     /// Samples the measurements of this event. Called once in a step for each due event, including the 1 ms event,
     /// which also continues long operations.
-    pub fn event(&mut self, event: Event, memory: &impl Memory, now_us: u32) {
+    pub fn event(&mut self, event: Event, memory: &EcuMemory<'_>, now_us: u32) {
         if event == Event::Every1Ms {
             self.carry_on(memory);
         }
@@ -167,7 +168,7 @@ impl Slave {
         let _ = self.queue.push_back(packet);
     }
 
-    fn carry_on(&mut self, memory: &impl Memory) {
+    fn carry_on(&mut self, memory: &EcuMemory<'_>) {
         self.unlocking.step(memory);
         let answer = self
             .checksum
@@ -183,7 +184,7 @@ impl Slave {
         &mut self,
         command: u8,
         rest: &[u8],
-        memory: &mut impl Memory,
+        memory: &mut EcuMemory<'_>,
         now_us: u32,
     ) -> Answer {
         match command {
@@ -195,7 +196,7 @@ impl Slave {
             code::GET_STATUS => self.status(memory),
             code::SYNCH => Err(Refusal::Synchronised),
             code::GET_COMM_MODE_INFO => response(&[0, 0, 0, 0, 0, 0, DRIVER_VERSION]),
-            code::GET_ID => self.identity(rest, memory),
+            code::GET_ID => self.identity(rest),
             code::SET_REQUEST => self.request_store(rest, memory),
             code::GET_SEED => self.unlocking.seed(rest, memory, now_us),
             code::UNLOCK => self.unlock(rest),
@@ -207,11 +208,11 @@ impl Slave {
             code::SET_CAL_PAGE => paging::set_page(rest, memory),
             code::GET_CAL_PAGE => paging::page(rest, memory),
             code::GET_PAG_PROCESSOR_INFO => paging::info(),
-            code::GET_SEGMENT_INFO => paging::segment_info(rest, memory),
+            code::GET_SEGMENT_INFO => paging::segment_info(rest),
             code::GET_PAGE_INFO => paging::page_info(rest),
             code::COPY_CAL_PAGE => paging::copy(rest, memory),
             code::GET_DAQ_EVENT_INFO => {
-                let (name, answer) = measuring::event_info(rest, memory)?;
+                let (name, answer) = measuring::event_info(rest)?;
                 self.transfer_address = name.address;
                 Ok(Some(answer))
             }
@@ -245,7 +246,7 @@ impl Slave {
         self.queue.clear();
     }
 
-    fn status(&self, memory: &impl Memory) -> Answer {
+    fn status(&self, memory: &EcuMemory<'_>) -> Answer {
         let mut session = 0;
         if self.store != Store::Idle {
             session |= STORE_REQUESTED;
@@ -271,24 +272,26 @@ impl Slave {
     }
 
     /// Sets the transfer address to a text.
-    fn identity(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
+    fn identity(&mut self, rest: &[u8]) -> Answer {
         let [kind, ..] = *rest else {
             return Err(Refusal::Syntax);
         };
         let text = match kind {
-            0 => memory.text(Text::Identity),
-            1 => memory.text(Text::DescriptionFile),
+            0 => text_range(Text::Identity),
+            1 => text_range(Text::DescriptionFile),
             _ => MemoryRange::default(),
         };
         self.transfer_address = text.address;
         response(&[0, 0, 0, text.length, 0, 0, 0])
     }
 
-    fn request_store(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
+    fn request_store(&mut self, rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
         const STORE_CALIBRATION: u8 = 0x01;
         match rest {
             [STORE_CALIBRATION, ..] if !memory.may_calibrate() => Err(Refusal::AccessLocked),
-            [STORE_CALIBRATION, ..] if memory.requires_key_to_store() && !self.is_unlocked() => {
+            [STORE_CALIBRATION, ..]
+                if memory.pages.requires_key_to_store() && !self.is_unlocked() =>
+            {
                 Err(Refusal::AccessLocked)
             }
             [STORE_CALIBRATION, ..] if !memory.may_store() => Err(Refusal::AccessDenied),
@@ -311,7 +314,7 @@ impl Slave {
         done()
     }
 
-    fn short_upload(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
+    fn short_upload(&mut self, rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
         let [_, _, extension, a, b, c, d, ..] = *rest else {
             return Err(Refusal::Syntax);
         };
@@ -319,7 +322,7 @@ impl Slave {
         self.upload(rest, memory)
     }
 
-    fn upload(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
+    fn upload(&mut self, rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
         let [count, ..] = *rest else {
             return Err(Refusal::Syntax);
         };
@@ -345,7 +348,7 @@ impl Slave {
         Ok(None)
     }
 
-    fn download(&mut self, command: u8, rest: &[u8], memory: &mut impl Memory) -> Answer {
+    fn download(&mut self, command: u8, rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
         let data = if command == code::DOWNLOAD_MAX {
             rest.get(..MOST_BYTES - 1)
         } else {
