@@ -3,6 +3,7 @@
 //! A one-byte quantity is data up to 250; 251 to 253 are reserved, 254 says that the sender's signal is
 //! bad, 255 that there is none. Unused bits are ones.
 
+use hitch_quantities::codes;
 use hitch_quantities::units::{Millisecond, Newton, PerMille};
 
 use super::trouble::Troubles;
@@ -50,29 +51,19 @@ pub struct HitchStatus {
     pub troubles: Troubles,
 }
 
-/// In-work indication (SPN 1877), 2 bits: the hitch is below or above an adjustable threshold.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum InWork {
-    /// Out of work.
-    No = 0,
-    /// In work.
-    Yes = 1,
-    /// The sensor is bad.
-    Error = 2,
-    /// There is no threshold.
-    #[default]
-    NotAvailable = 3,
-}
-
-impl InWork {
-    const fn from_bits(bits: u8) -> Self {
-        match bits & 0x03 {
-            0 => Self::No,
-            1 => Self::Yes,
-            2 => Self::Error,
-            _ => Self::NotAvailable,
-        }
+codes! {
+    /// In-work indication (SPN 1877), 2 bits: the hitch is below or above an adjustable threshold.
+    #[derive(Default)]
+    InWork: u8 {
+        /// Out of work.
+        No = 0;
+        /// In work.
+        Yes = 1;
+        /// The sensor is bad.
+        Error = 2;
+        /// There is no threshold.
+        #[default]
+        NotAvailable = 3;
     }
 }
 
@@ -102,94 +93,70 @@ pub enum Limit {
     NonRecoverable,
 }
 
-/// Position limit status (SPN 5151), 3 bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum LimitStatus {
-    /// The command acts.
-    NotLimited = 0,
-    /// The operator has control.
-    OperatorLimited = 1,
-    /// Only lower values act.
-    LimitedHigh = 2,
-    /// Only higher values act.
-    LimitedLow = 3,
-    /// 4 and 5.
-    Reserved = 4,
-    /// Fault that only a restart clears.
-    NonRecoverable = 6,
-    /// Not available.
-    NotAvailable = 7,
-}
-
-impl LimitStatus {
-    const fn from_bits(bits: u8) -> Self {
-        match bits & 0x07 {
-            0 => Self::NotLimited,
-            1 => Self::OperatorLimited,
-            2 => Self::LimitedHigh,
-            3 => Self::LimitedLow,
-            6 => Self::NonRecoverable,
-            7 => Self::NotAvailable,
-            _ => Self::Reserved,
-        }
+codes! {
+    /// Position limit status (SPN 5151), 3 bits.
+    LimitStatus: u8 {
+        /// The command acts.
+        NotLimited = 0;
+        /// The operator has control.
+        OperatorLimited = 1;
+        /// Only lower values act.
+        LimitedHigh = 2;
+        /// Only higher values act.
+        LimitedLow = 3;
+        /// 4 and 5.
+        Reserved = 4;
+        /// Fault that only a restart clears.
+        NonRecoverable = 6;
+        /// Not available.
+        NotAvailable = 7;
     }
 }
 
-macro_rules! exit_codes {
-    ($($(#[$doc:meta])+ $name:ident = $code:literal,)+) => {
-        /// Exit or reason code (SPN 5819), 6 bits: why the hitch left remote control, or can't be in it.
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-        #[repr(u8)]
-        pub enum ExitCode {
-            $($(#[$doc])+ $name = $code,)+
-        }
-
-        impl ExitCode {
-            /// The reason of 6 bits; reserved ones are not available.
-            #[must_use]
-            pub const fn from_bits(bits: u8) -> Self {
-                match bits & 0x3F {
-                    $($code => Self::$name,)+
-                    _ => Self::NotAvailable,
-                }
-            }
-        }
-    };
+codes! {
+    /// Exit or reason code (SPN 5819), 6 bits: why the hitch left remote control, or can't be in it.
+    #[derive(Default)]
+    ExitCode: u8 {
+        /// No reason, all clear.
+        #[default]
+        Clear = 0;
+        /// Required level of operator presence not detected.
+        NoOperator = 1;
+        /// The implement gave control back.
+        Released = 2;
+        /// The operator took control.
+        OperatorOverride = 3;
+        /// Operator control not in a valid position.
+        ControlNotValid = 4;
+        /// The commands stopped.
+        Timeout = 5;
+        /// A command was out of range.
+        OutOfRange = 6;
+        /// Not calibrated.
+        NotCalibrated = 7;
+        /// The operator control is faulty.
+        ControlFault = 8;
+        /// The function is faulty.
+        FunctionFault = 9;
+        /// Ground speed too high.
+        SpeedTooHigh = 17;
+        /// Oil level too low.
+        OilLevelLow = 20;
+        /// Hitch locked out.
+        LockedOut = 21;
+        /// Error.
+        Error = 62;
+        /// Not available.
+        NotAvailable = 63;
+    }
 }
 
-exit_codes! {
-    /// No reason, all clear.
-    #[default]
-    Clear = 0,
-    /// Required level of operator presence not detected.
-    NoOperator = 1,
-    /// The implement gave control back.
-    Released = 2,
-    /// The operator took control.
-    OperatorOverride = 3,
-    /// Operator control not in a valid position.
-    ControlNotValid = 4,
-    /// The commands stopped.
-    Timeout = 5,
-    /// A command was out of range.
-    OutOfRange = 6,
-    /// Not calibrated.
-    NotCalibrated = 7,
-    /// The operator control is faulty.
-    ControlFault = 8,
-    /// The function is faulty.
-    FunctionFault = 9,
-    /// Ground speed too high.
-    SpeedTooHigh = 17,
-    /// Oil level too low.
-    OilLevelLow = 20,
-    /// Hitch locked out.
-    LockedOut = 21,
-    /// Error.
-    Error = 62,
-    /// Not available.
-    NotAvailable = 63,
+impl ExitCode {
+    /// The reason of 6 bits; reserved ones are not available.
+    #[must_use]
+    pub fn from_bits(bits: u8) -> Self {
+        Self::from_code(bits & 0x3F).unwrap_or(Self::NotAvailable)
+    }
 }
 
 /// Rear hitch status as it is on the bus.
@@ -245,8 +212,8 @@ impl StatusMessage {
         let [position, flags, lower_link_force, low, high, exit, _, _] = *bytes;
         Self {
             position,
-            in_work: InWork::from_bits(flags >> 6),
-            limit: LimitStatus::from_bits(flags >> 3),
+            in_work: InWork::from_code(flags >> 6).unwrap_or_default(),
+            limit: LimitStatus::from_code(flags >> 3 & 0x07).unwrap_or(LimitStatus::Reserved),
             lower_link_force,
             draft: u16::from_le_bytes([low, high]),
             exit: ExitCode::from_bits(exit),
