@@ -7,6 +7,7 @@ pub mod field;
 pub mod trip;
 
 use super::codes;
+use super::image::Writer;
 use super::units::{
     Count, Duty, MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp,
     MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, MillimetrePerSecond,
@@ -263,12 +264,12 @@ impl Inputs {
     /// control are not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
-        let mut writer = Writer::new([0; INPUT_BYTES]);
+        let mut writer = Writer::<INPUT_BYTES>::default();
         writer.put(self.valid_and_switches().to_le_bytes());
         self.fields()
             .into_iter()
             .for_each(|field| writer.put(field.unwrap_or(0).to_le_bytes()));
-        writer.bytes
+        writer.bytes()
     }
 
     /// The inputs of an image. Unknown validity bits are ignored.
@@ -317,7 +318,7 @@ impl Outputs {
     /// values in the order of the fields. Draft, in-work and the time until then are not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; OUTPUT_BYTES] {
-        let mut writer = Writer::new([0; OUTPUT_BYTES]);
+        let mut writer = Writer::<OUTPUT_BYTES>::default();
         writer.put([
             self.state as u8,
             self.fault.map_or(0, |fault| fault as u8),
@@ -339,30 +340,7 @@ impl Outputs {
         values
             .into_iter()
             .for_each(|value| writer.put(value.to_le_bytes()));
-        writer.bytes
-    }
-}
-
-/// Writes words one after the other; what doesn't fit is dropped.
-struct Writer<const N: usize> {
-    bytes: [u8; N],
-    at: usize,
-}
-
-impl<const N: usize> Writer<N> {
-    const fn new(bytes: [u8; N]) -> Self {
-        Self { bytes, at: 0 }
-    }
-
-    fn put(&mut self, word: [u8; 4]) {
-        if let Some(target) = self
-            .bytes
-            .get_mut(self.at..)
-            .and_then(|rest| rest.first_chunk_mut::<4>())
-        {
-            *target = word;
-        }
-        self.at = self.at.saturating_add(4);
+        writer.bytes()
     }
 }
 
