@@ -26,7 +26,7 @@ use super::hitch::{ExitCode, HitchCommand, LimitStatus};
 use super::id::{Id, Pgn};
 use super::name::Name;
 use super::request::Acknowledgement;
-use super::time::since_ms;
+use super::time::is_due;
 use crate::can::Frame;
 
 /// No client; as a NAME it would be no implement's.
@@ -351,9 +351,7 @@ impl Tim {
             let id = Id::broadcast(Pgn::TIM_SERVER, STATUS_PRIORITY, source);
             return Some(Said::Frame(id.frame(bytes)));
         }
-        let is_spaced = self
-            .replied_ms
-            .is_none_or(|last| since_ms(last, now_ms) >= SPACING_MS);
+        let is_spaced = is_due(self.replied_ms, SPACING_MS, now_ms);
         let is_ready = |reply: &Reply| is_spaced && (has_room || *reply != Reply::AssignmentStatus);
         let [first, next] = self.replies;
         let reply = first.filter(is_ready)?;
@@ -380,23 +378,9 @@ impl Tim {
             Reply::Assignment(count, [a, b, c, d, e, f]) => [ASSIGNMENT, count, a, b, c, d, e, f],
             Reply::AssignmentStatus => match self.client() {
                 Some(name) if self.is_assigned => {
-                    let [a, b, c, d, e, f, g, h] = name.to_bytes();
-                    let status = [
-                        ASSIGNMENT_STATUS,
-                        0,
-                        1,
-                        a,
-                        b,
-                        c,
-                        d,
-                        e,
-                        f,
-                        g,
-                        h,
-                        1,
-                        REAR_HITCH,
-                    ];
-                    return Said::Message(status.into_iter().collect());
+                    let head = [ASSIGNMENT_STATUS, 0, 1].into_iter();
+                    let status = head.chain(name.to_bytes()).chain([1, REAR_HITCH]);
+                    return Said::Message(status.collect());
                 }
                 _ => [ASSIGNMENT_STATUS, 1, REAR_HITCH, 0, NO, NO, NO, NO],
             },
@@ -421,11 +405,8 @@ impl Tim {
                     Pgn::TIM_CLIENT
                 };
                 let [a, b, c] = group.to_bytes();
-                let id = Id {
-                    destination: to,
-                    ..Id::broadcast(Pgn::ACKNOWLEDGEMENT, PRIORITY, source)
-                };
-                return Said::Frame(id.frame([control as u8, code, NO, NO, to, a, b, c]));
+                let id = Id::broadcast(Pgn::ACKNOWLEDGEMENT, PRIORITY, source);
+                return Said::Frame(id.to(to).frame([control as u8, code, NO, NO, to, a, b, c]));
             }
         };
         Said::Frame(Id::broadcast(Pgn::TIM_SERVER, PRIORITY, source).frame(bytes))

@@ -6,7 +6,7 @@ use super::error::Refusal;
 use super::event::Event;
 use super::map::{EcuMemory, text_range};
 use super::memory::{MemoryRange, Text};
-use super::packet::{Answer, Packet, done, packet, response};
+use super::packet::{Answer, Packet, arguments, done, packet, response};
 
 /// Lists are dynamic, with prescalers and time stamps; an overload is reported as an event.
 const PROPERTIES: u8 = 0x93;
@@ -92,9 +92,7 @@ fn with_arguments(daq: &mut Daq, command: u8, rest: &[u8], memory: &EcuMemory<'_
 
 /// GET_DAQ_EVENT_INFO: properties of an event, and address of its name.
 pub(super) fn event_info(rest: &[u8]) -> Result<(MemoryRange, Packet), Refusal> {
-    let [_, a, b, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
+    let [_, a, b] = arguments(rest)?;
     let event = Event::from_number(u16::from_le_bytes([a, b])).ok_or(Refusal::OutOfRange)?;
     let name = text_range(Text::Event(event));
     let info = [

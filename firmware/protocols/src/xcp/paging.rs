@@ -5,7 +5,7 @@ use hitch_quantities::calibration::CALIBRATION_BYTES;
 use super::error::Refusal;
 use super::map::{CALIBRATION_BASE, EcuMemory};
 use super::memory::Page;
-use super::packet::{Answer, done, response};
+use super::packet::{Answer, arguments, done, response};
 
 const SEGMENTS: u8 = 1;
 const PAGES: u8 = 2;
@@ -17,11 +17,9 @@ const ALL: u8 = 0x80;
 
 /// SET_CAL_PAGE: mode, segment, page.
 pub(super) fn set_page(rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
-    let [mode, segment, number, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if segment >= SEGMENTS && mode & ALL == 0 {
-        return Err(Refusal::SegmentNotValid);
+    let [mode, segment, number] = arguments(rest)?;
+    if mode & ALL == 0 {
+        check_segment(segment)?;
     }
     let page = Page::from_number(number).ok_or(Refusal::PageNotValid)?;
     if mode & (CONTROLLER | TOOL) == 0 {
@@ -39,12 +37,8 @@ pub(super) fn set_page(rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
 
 /// GET_CAL_PAGE: target, segment.
 pub(super) fn page(rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
-    let [access, segment, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if segment >= SEGMENTS {
-        return Err(Refusal::SegmentNotValid);
-    }
+    let [access, segment] = arguments(rest)?;
+    check_segment(segment)?;
     let page = match access {
         CONTROLLER => memory.pages.controller_page(),
         TOOL => memory.pages.tool_page(),
@@ -60,12 +54,8 @@ pub(super) fn info() -> Answer {
 
 /// GET_SEGMENT_INFO: address of the segment, and number of pages.
 pub(super) fn segment_info(rest: &[u8]) -> Answer {
-    let [mode, segment, info, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if segment >= SEGMENTS {
-        return Err(Refusal::SegmentNotValid);
-    }
+    let [mode, segment, info] = arguments(rest)?;
+    check_segment(segment)?;
     let basic = match (mode, info) {
         (0, 0) => CALIBRATION_BASE,
         (0, 1) => CALIBRATION_BYTES as u32,
@@ -84,12 +74,8 @@ pub(super) fn page_info(rest: &[u8]) -> Answer {
     const READABLE: u8 = 0x0F;
     /// By the tool, independent of the controller.
     const WRITABLE: u8 = 0x30;
-    let [_, segment, page, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if segment >= SEGMENTS {
-        return Err(Refusal::SegmentNotValid);
-    }
+    let [_, segment, page] = arguments(rest)?;
+    check_segment(segment)?;
     match Page::from_number(page).ok_or(Refusal::PageNotValid)? {
         Page::Working => response(&[READABLE | WRITABLE, 0]),
         Page::Reference => response(&[READABLE, 0]),
@@ -98,12 +84,9 @@ pub(super) fn page_info(rest: &[u8]) -> Answer {
 
 /// COPY_CAL_PAGE: only from the reference page to the working page.
 pub(super) fn copy(rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
-    let [from_segment, from, to_segment, to, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if from_segment >= SEGMENTS || to_segment >= SEGMENTS {
-        return Err(Refusal::SegmentNotValid);
-    }
+    let [from_segment, from, to_segment, to] = arguments(rest)?;
+    check_segment(from_segment)?;
+    check_segment(to_segment)?;
     if from >= PAGES || to >= PAGES {
         return Err(Refusal::PageNotValid);
     }
@@ -113,4 +96,12 @@ pub(super) fn copy(rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
         _ => return Err(Refusal::ModeNotValid),
     }
     done()
+}
+
+const fn check_segment(number: u8) -> Result<(), Refusal> {
+    if number < SEGMENTS {
+        Ok(())
+    } else {
+        Err(Refusal::SegmentNotValid)
+    }
 }

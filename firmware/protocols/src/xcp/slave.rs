@@ -9,7 +9,7 @@ use super::error::Refusal;
 use super::event::Event;
 use super::map::{EcuMemory, text_range};
 use super::memory::{MemoryRange, Text};
-use super::packet::{Answer, MOST_BYTES, Packet, done, packet, response};
+use super::packet::{Answer, MOST_BYTES, Packet, arguments, done, packet, response};
 use super::unlocking::{CALIBRATION, Unlocking};
 use super::{checksum, measuring, paging};
 use crate::can::Frame;
@@ -126,12 +126,7 @@ impl Slave {
 
     /// The next frame: answers first, then samples. Called while there is room for one.
     pub fn poll(&mut self) -> Option<Frame> {
-        let id = Id {
-            priority: PRIORITY,
-            pgn: Pgn::PROPRIETARY_A,
-            destination: TOOL_ADDRESS,
-            source: self.address?,
-        };
+        let id = Id::broadcast(Pgn::PROPRIETARY_A, PRIORITY, self.address?).to(TOOL_ADDRESS);
         let packet = self.queue.pop_front();
         let packet = packet.or_else(|| self.daq.next_packet())?;
         Frame::data_frame(id.pack().into(), &packet)
@@ -273,9 +268,7 @@ impl Slave {
 
     /// Sets the transfer address to a text.
     fn identity(&mut self, rest: &[u8]) -> Answer {
-        let [kind, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+        let [kind] = arguments(rest)?;
         let text = match kind {
             0 => text_range(Text::Identity),
             1 => text_range(Text::DescriptionFile),
@@ -307,25 +300,19 @@ impl Slave {
     }
 
     fn set_transfer_address(&mut self, rest: &[u8]) -> Answer {
-        let [_, _, extension, a, b, c, d, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+        let [_, _, extension, a, b, c, d] = arguments(rest)?;
         self.transfer_address = address(extension, [a, b, c, d])?;
         done()
     }
 
     fn short_upload(&mut self, rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
-        let [_, _, extension, a, b, c, d, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+        let [_, _, extension, a, b, c, d] = arguments(rest)?;
         self.transfer_address = address(extension, [a, b, c, d])?;
         self.upload(rest, memory)
     }
 
     fn upload(&mut self, rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
-        let [count, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+        let [count] = arguments(rest)?;
         let mut bytes = [0; MOST_BYTES - 1];
         let target = bytes.get_mut(..usize::from(count));
         let target = target.ok_or(Refusal::OutOfRange)?;
@@ -335,9 +322,7 @@ impl Slave {
     }
 
     fn build_checksum(&mut self, rest: &[u8]) -> Answer {
-        let [_, _, _, a, b, c, d, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+        let [_, _, _, a, b, c, d] = arguments(rest)?;
         let length = u32::from_le_bytes([a, b, c, d]);
         if length > checksum::LONGEST {
             return Ok(Some(checksum::too_long()));
