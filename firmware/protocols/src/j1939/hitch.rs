@@ -6,6 +6,7 @@
 use hitch_quantities::codes;
 use hitch_quantities::units::{Millisecond, Newton, PerMille};
 
+use super::scale::{self, Scale};
 use super::trouble::Troubles;
 
 /// Largest raw value of a one-byte quantity that is data.
@@ -16,16 +17,16 @@ const ERROR: u8 = 254;
 const NOT_AVAILABLE: u8 = 255;
 /// Positions have 0.4 % a bit.
 const PER_MILLE_PER_BIT: i32 = 4;
-/// Resolution of the draft.
-const NEWTON_PER_BIT: i32 = 10;
-/// Draft of the raw value 0.
-const LEAST_DRAFT: Newton = Newton(-320_000);
-/// Largest raw value of the draft that is data.
-const LARGEST_DRAFT: i32 = 0xFAFF;
-/// Largest raw value of a time that is data.
-const LARGEST_TIME: i32 = 0xFAFF;
-/// Raw value of the draft: the signal is bad.
-const DRAFT_ERROR: u16 = 0xFE00;
+/// Draft: 10 N a bit from -320 kN.
+const DRAFT: Scale = Scale {
+    offset: -320_000,
+    per_bit: 10,
+};
+/// A time: 1 ms a bit.
+const TIME: Scale = Scale {
+    offset: 0,
+    per_bit: 1,
+};
 
 /// What the controller tells the bus about the hitch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -252,9 +253,7 @@ pub const fn facilities(is_commanded: bool, has_draft: bool, has_in_work: bool) 
 /// group is a proprietary one: no public group has this time.
 #[must_use]
 pub fn time_until_work(time: Option<Millisecond>) -> [u8; 8] {
-    let raw = time.map_or(u16::MAX, |time| {
-        u16::try_from(time.0.clamp(0, LARGEST_TIME)).unwrap_or(u16::MAX)
-    });
+    let raw = time.map_or(scale::NOT_AVAILABLE, |time| TIME.raw(time.0));
     let [low, high] = raw.to_le_bytes();
     [low, high, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF]
 }
@@ -305,13 +304,9 @@ pub fn raw_position(position: Option<PerMille>) -> u8 {
 /// The raw value of a draft, rounded to nearest; what is beyond the ends is at the end.
 fn raw_draft(draft: Draft) -> u16 {
     match draft {
-        Draft::NotFitted => u16::MAX,
-        Draft::Lost => DRAFT_ERROR,
-        Draft::Measured(draft) => {
-            let above = (draft - LEAST_DRAFT).0.max(0);
-            let rounded = above.saturating_add(NEWTON_PER_BIT / 2) / NEWTON_PER_BIT;
-            u16::try_from(rounded.min(LARGEST_DRAFT)).unwrap_or(DRAFT_ERROR)
-        }
+        Draft::NotFitted => scale::NOT_AVAILABLE,
+        Draft::Lost => scale::ERROR,
+        Draft::Measured(draft) => DRAFT.raw(draft.0),
     }
 }
 

@@ -26,6 +26,7 @@ use super::hitch::{ExitCode, HitchCommand, LimitStatus};
 use super::id::{Id, Pgn};
 use super::name::Name;
 use super::request::Acknowledgement;
+use super::scale;
 use super::time::is_due;
 use crate::can::Frame;
 
@@ -69,8 +70,6 @@ const LARGEST_POSITION: u16 = 10_000;
 const PER_COMMAND_BIT: u16 = 40;
 /// Bits of a position per thousandth.
 const PER_MILLE: u16 = 10;
-/// The signal is bad.
-const POSITION_ERROR: u16 = 0xFE00;
 /// Released control, requesting an action of the operator.
 const RELEASED: u16 = 0xFBFD;
 /// Ready to control.
@@ -385,7 +384,7 @@ impl Tim {
                 _ => [ASSIGNMENT_STATUS, 1, REAR_HITCH, 0, NO, NO, NO, NO],
             },
             Reply::Function { counter } => {
-                let position = self.view.position.map_or(POSITION_ERROR, |position| {
+                let position = self.view.position.map_or(scale::ERROR, |position| {
                     position.saturating_mul(PER_MILLE).min(LARGEST_POSITION)
                 });
                 let [low, high] = position.to_le_bytes();
