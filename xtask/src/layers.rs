@@ -26,7 +26,7 @@ const CRATES: [Layers; 12] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
-            &["crc32", "fixed", "fnv", "units"],
+            &["codes", "crc32", "fixed", "fnv", "image", "units"],
             &["piston"],
             &["calibration"],
             &["signals"],

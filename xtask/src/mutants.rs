@@ -46,6 +46,7 @@ const PARTS: [Part; 4] = [
         changed: &["firmware/protocols/src/storage/store.rs"],
         decides: &[
             "firmware/protocols/src/storage",
+            "firmware/quantities/src/calibration/block.rs",
             "firmware/quantities/src/calibration/calibration_words.rs",
             "firmware/quantities/src/crc32.rs",
             "firmware/protocols/tests/storage",

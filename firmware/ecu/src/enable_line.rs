@@ -16,11 +16,13 @@
 //! A line that is stuck low is safe. One that is stuck high disables the second switch-off path, which is visible only
 //! while the line is commanded low. Both levels therefore have to be read back before the first current.
 
+use hitch_quantities::units::Millisecond;
+
 use super::drive::{Compare, Drive};
 
-/// Time for which the read-back has to agree, or may disagree, ms: much longer than the delay of a driver's enable
+/// Time for which the read-back has to agree, or may disagree: much longer than the delay of a driver's enable
 /// input with its filter, and shorter than the response of a spool.
-const SETTLING_MS: u8 = 5;
+const SETTLING: Millisecond = Millisecond(5);
 
 /// State of the test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,10 +46,10 @@ pub struct EnableLine {
     state: EnableLineState,
     /// Commanded level of the last millisecond.
     asked: bool,
-    /// Time for which the read-back has agreed in the present state, ms.
-    agreed_ms: u8,
-    /// Time for which it has disagreed, ms.
-    differed_ms: u8,
+    /// Time for which the read-back has agreed in the present state.
+    agreed_for: Millisecond,
+    /// Time for which it has disagreed.
+    differed_for: Millisecond,
 }
 
 impl EnableLine {
@@ -58,19 +60,11 @@ impl EnableLine {
             return self.state == EnableLineState::Faulty;
         };
         let agrees = level == self.asked;
-        self.agreed_ms = if agrees {
-            self.agreed_ms.saturating_add(1)
-        } else {
-            0
-        };
-        self.differed_ms = if agrees {
-            0
-        } else {
-            self.differed_ms.saturating_add(1)
-        };
-        let settled = self.agreed_ms >= SETTLING_MS;
+        self.agreed_for = self.agreed_for.counted_while(agrees);
+        self.differed_for = self.differed_for.counted_while(!agrees);
+        let settled = self.agreed_for >= SETTLING;
         self.state = match self.state {
-            _ if self.differed_ms >= SETTLING_MS => EnableLineState::Faulty,
+            _ if self.differed_for >= SETTLING => EnableLineState::Faulty,
             EnableLineState::Low if settled => EnableLineState::Untested,
             EnableLineState::Raised if settled => EnableLineState::Proven,
             state => state,
@@ -86,7 +80,7 @@ impl EnableLine {
             EnableLineState::Low => Drive::OFF,
             EnableLineState::Untested if wanted.enable => {
                 self.state = EnableLineState::Raised;
-                self.agreed_ms = 0;
+                self.agreed_for = Millisecond::ZERO;
                 RAISED
             }
             EnableLineState::Raised if wanted.enable => RAISED,
@@ -177,7 +171,7 @@ mod tests {
             run(&mut line, &[drive; 20], |asked| asked);
             let given = run(&mut line, &[drive; 20], |_| stuck);
             let tripped = given.iter().position(|(_, faulty)| *faulty);
-            assert_eq!(tripped, Some(usize::from(SETTLING_MS) - 1), "{stuck}");
+            assert_eq!(tripped, Some(SETTLING.0 as usize - 1), "{stuck}");
             let mut line = EnableLine::default();
             run(&mut line, &[wanted(); 20], |asked| asked);
             run(&mut line, &[drive; 20], |asked| asked);

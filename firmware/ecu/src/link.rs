@@ -14,6 +14,7 @@
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_protocols::can::Frame;
+use hitch_quantities::image::{Reader, Writer};
 use hitch_quantities::units::PerMille;
 
 use super::adc_code::AdcCode;
@@ -82,14 +83,6 @@ impl Request {
             Self::Tick { contacts, frames } => (*contacts, 0, *frames),
             Self::PowerCycle => (Contacts::default(), 1, 0),
         };
-        let mut bytes = [0; REQUEST_BYTES];
-        let (head, clock) = bytes.split_at_mut(REQUEST_BYTES - 4);
-        clock.copy_from_slice(&contacts.clock_us.to_le_bytes());
-        let (codes, rest) = head.split_at_mut(2 * Samples::CHANNELS);
-        let pairs = codes.as_chunks_mut::<2>().0;
-        for (pair, code) in pairs.iter_mut().zip(contacts.samples.codes()) {
-            *pair = code.get().to_le_bytes();
-        }
         let frames = u8::try_from(frames.min(MOST_FRAMES)).unwrap_or(0);
         let enable = match contacts.enable_feedback {
             None => 0,
@@ -99,53 +92,41 @@ impl Request {
         let ratio = contacts.clock_ratio.map_or(NO_RATIO, |ratio| {
             i16::try_from(ratio.0.max(0)).unwrap_or(i16::MAX)
         });
-        let [low, high] = ratio.to_le_bytes();
-        let [panel_low, panel_high] = contacts.panel.bits().to_le_bytes();
-        rest.copy_from_slice(&[panel_low, panel_high, kind, frames, enable, 0, low, high]);
-        bytes
+        let mut writer = Writer::default();
+        for code in contacts.samples.codes() {
+            writer.put(code.get().to_le_bytes());
+        }
+        writer.put(contacts.panel.bits().to_le_bytes());
+        writer.put([kind, frames, enable, 0]);
+        writer.put(ratio.to_le_bytes());
+        writer.put(contacts.clock_us.to_le_bytes());
+        writer.bytes()
     }
 
     /// From bytes; the number of frames is limited to its maximum.
     #[must_use]
     pub fn from_bytes(bytes: &[u8; REQUEST_BYTES]) -> Self {
-        let (pairs, _) = bytes.as_chunks::<2>();
-        let mut codes = [AdcCode::default(); Samples::CHANNELS];
-        for (code, pair) in codes.iter_mut().zip(pairs) {
-            *code = AdcCode::new(u16::from_le_bytes(*pair));
-        }
-        let Some(
-            [
-                panel_low,
-                panel_high,
-                kind,
-                frames,
-                enable,
-                _,
-                low,
-                high,
-                a,
-                b,
-                c,
-                d,
-            ],
-        ) = bytes.last_chunk::<12>().copied()
-        else {
-            return Self::PowerCycle;
-        };
+        let mut reader = Reader(bytes);
+        let codes =
+            [(); Samples::CHANNELS].map(|()| AdcCode::new(u16::from_le_bytes(reader.take())));
+        let panel = u16::from_le_bytes(reader.take());
+        let [kind, frames, enable, _] = reader.take();
+        let ratio = i16::from_le_bytes(reader.take());
+        let clock_us = u32::from_le_bytes(reader.take());
         if kind == 1 {
             return Self::PowerCycle;
         }
         Self::Tick {
             contacts: Contacts {
                 samples: Samples::from_codes(codes),
-                panel: Panel::from_bits(u16::from_le_bytes([panel_low, panel_high])),
-                clock_us: u32::from_le_bytes([a, b, c, d]),
+                panel: Panel::from_bits(panel),
+                clock_us,
                 enable_feedback: match enable {
                     1 => Some(false),
                     2 => Some(true),
                     _ => None,
                 },
-                clock_ratio: Some(i16::from_le_bytes([low, high]))
+                clock_ratio: Some(ratio)
                     .filter(|&ratio| ratio != NO_RATIO)
                     .map(|ratio| PerMille(i32::from(ratio))),
             },
@@ -157,69 +138,43 @@ impl Request {
 impl Reply {
     /// As bytes.
     #[must_use]
-    pub const fn to_bytes(&self) -> [u8; REPLY_BYTES] {
-        let [lift_low, lift_high] = self.lift.to_le_bytes();
-        let [lower_low, lower_high] = self.lower.to_le_bytes();
-        let [a, b, c, d] = self.target_mdeg.to_le_bytes();
-        let [e, f] = self.lift_ma.to_le_bytes();
-        let [g, h] = self.lower_ma.to_le_bytes();
-        [
-            lift_low,
-            lift_high,
-            lower_low,
-            lower_high,
-            self.enable as u8,
-            self.kicked as u8,
+    pub fn to_bytes(&self) -> [u8; REPLY_BYTES] {
+        let (enable, kicked) = (u8::from(self.enable), u8::from(self.kicked));
+        let mut writer = Writer::default();
+        writer.put(self.lift.to_le_bytes());
+        writer.put(self.lower.to_le_bytes());
+        writer.put([
+            enable,
+            kicked,
             self.state,
             self.fault,
             self.trip,
             self.frames,
-            a,
-            b,
-            c,
-            d,
-            e,
-            f,
-            g,
-            h,
-        ]
+        ]);
+        writer.put(self.target_mdeg.to_le_bytes());
+        writer.put(self.lift_ma.to_le_bytes());
+        writer.put(self.lower_ma.to_le_bytes());
+        writer.bytes()
     }
 
     /// From bytes.
     #[must_use]
-    pub const fn from_bytes(bytes: &[u8; REPLY_BYTES]) -> Self {
-        let [
-            lift_low,
-            lift_high,
-            lower_low,
-            lower_high,
-            enable,
-            kicked,
-            state,
-            fault,
-            trip,
-            frames,
-            a,
-            b,
-            c,
-            d,
-            e,
-            f,
-            g,
-            h,
-        ] = *bytes;
+    pub fn from_bytes(bytes: &[u8; REPLY_BYTES]) -> Self {
+        let mut reader = Reader(bytes);
+        let [lift, lower] = [reader.take(), reader.take()].map(u16::from_le_bytes);
+        let [enable, kicked, state, fault, trip, frames] = reader.take();
         Self {
-            lift: u16::from_le_bytes([lift_low, lift_high]),
-            lower: u16::from_le_bytes([lower_low, lower_high]),
+            lift,
+            lower,
             enable: enable != 0,
             kicked: kicked != 0,
             state,
             fault,
             trip,
             frames,
-            target_mdeg: i32::from_le_bytes([a, b, c, d]),
-            lift_ma: i16::from_le_bytes([e, f]),
-            lower_ma: i16::from_le_bytes([g, h]),
+            target_mdeg: i32::from_le_bytes(reader.take()),
+            lift_ma: i16::from_le_bytes(reader.take()),
+            lower_ma: i16::from_le_bytes(reader.take()),
         }
     }
 }
@@ -239,9 +194,7 @@ pub fn frame_to_bytes(frame: &Frame) -> [u8; FRAME_BYTES] {
     let (head, data) = bytes.split_at_mut(8);
     let [a, b, c, d] = (id | remote).to_le_bytes();
     head.copy_from_slice(&[a, b, c, d, frame.length(), 0, 0, 0]);
-    for (target, &byte) in data.iter_mut().zip(frame.data()) {
-        *target = byte;
-    }
+    data.copy_from_slice(&frame.padded());
     bytes
 }
 
@@ -256,12 +209,7 @@ pub fn frame_from_bytes(bytes: &[u8; FRAME_BYTES]) -> Option<Frame> {
     } else {
         Id::Standard(StandardId::new(u16::try_from(bits).ok()?)?)
     };
-    let length = usize::from(*length);
-    if word & REMOTE != 0 {
-        Frame::remote_frame(id, length)
-    } else {
-        Frame::data_frame(id, data.get(..length)?)
-    }
+    Frame::from_padded(id, word & REMOTE != 0, *length, *data)
 }
 
 #[cfg(test)]

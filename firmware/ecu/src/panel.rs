@@ -1,5 +1,6 @@
 //! The operator's buttons and switches as contacts.
 
+use hitch_quantities::codes;
 use hitch_quantities::units::{Count, MilliDegreePerSecond};
 use hitch_quantities::{Function, Inputs, Switches};
 
@@ -7,59 +8,44 @@ use hitch_quantities::{Function, Inputs, Switches};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Panel(u16);
 
-/// One contact of the panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u16)]
-pub enum Contact {
-    /// External button: up.
-    Up = 1 << 0,
-    /// External button: down.
-    Down = 1 << 1,
-    /// Field/road switch: closed in the field. Open, by hand or by a broken wire, the hitch is locked for the road.
-    FieldMode = 1 << 2,
-    /// Hold.
-    Hold = 1 << 3,
-    /// Quick lift.
-    QuickLift = 1 << 4,
-    /// Service: the external buttons start teaching.
-    Service = 1 << 5,
-    /// Consent to remote control, a button. Open is no consent.
-    Consent = 1 << 6,
-    /// Second contact of the button up: closed while it is released. Open, by a press or by a broken wire, it is not.
-    UpReleased = 1 << 7,
-    /// The same of the button down.
-    DownReleased = 1 << 8,
-    /// Quick engagement, closed as long as it is held. Open, by hand or by a broken wire, it does not lower.
-    Engage = 1 << 9,
-    /// Selector of the function: draft. With none of its contacts closed, by hand or by a broken wire, or with more than
-    /// one, the lever is the position.
-    Draft = 1 << 10,
-    /// Selector: mix.
-    Mix = 1 << 11,
-    /// Selector: depth limit.
-    DepthLimit = 1 << 12,
-    /// Selector: depth.
-    Depth = 1 << 13,
+codes! {
+    /// One contact of the panel.
+    Contact: u16 {
+        /// External button: up.
+        Up = 1 << 0;
+        /// External button: down.
+        Down = 1 << 1;
+        /// Field/road switch: closed in the field. Open, by hand or by a broken wire, the hitch is locked for the road.
+        FieldMode = 1 << 2;
+        /// Hold.
+        Hold = 1 << 3;
+        /// Quick lift.
+        QuickLift = 1 << 4;
+        /// Service: the external buttons start teaching.
+        Service = 1 << 5;
+        /// Consent to remote control, a button. Open is no consent.
+        Consent = 1 << 6;
+        /// Second contact of the button up: closed while it is released. Open, by a press or by a broken wire, it is not.
+        UpReleased = 1 << 7;
+        /// The same of the button down.
+        DownReleased = 1 << 8;
+        /// Quick engagement, closed as long as it is held. Open, by hand or by a broken wire, it does not lower.
+        Engage = 1 << 9;
+        /// Selector of the function: draft. With none of its contacts closed, by hand or by a broken wire, or with more than
+        /// one, the lever is the position.
+        Draft = 1 << 10;
+        /// Selector: mix.
+        Mix = 1 << 11;
+        /// Selector: depth limit.
+        DepthLimit = 1 << 12;
+        /// Selector: depth.
+        Depth = 1 << 13;
+    }
 }
 
 impl Panel {
     /// Contacts in the order of their bits.
-    pub const CONTACTS: [Contact; 14] = [
-        Contact::Up,
-        Contact::Down,
-        Contact::FieldMode,
-        Contact::Hold,
-        Contact::QuickLift,
-        Contact::Service,
-        Contact::Consent,
-        Contact::UpReleased,
-        Contact::DownReleased,
-        Contact::Engage,
-        Contact::Draft,
-        Contact::Mix,
-        Contact::DepthLimit,
-        Contact::Depth,
-    ];
+    pub const CONTACTS: [Contact; Contact::ALL.len()] = Contact::ALL;
 
     /// A tractor in the field with nothing pressed.
     pub const FIELD: Self =

@@ -6,6 +6,7 @@
 
 use embedded_storage::nor_flash::ReadNorFlash;
 use hitch_quantities::crc32::Crc32;
+use hitch_quantities::image::Writer;
 use hmac::{Hmac, KeyInit, Mac};
 use sha2::Sha256;
 
@@ -49,12 +50,11 @@ impl Nonce {
     /// The challenge at this time, us.
     #[must_use]
     pub fn seed(self, now_us: u32) -> Seed {
-        let mut seed = [0; SEED_BYTES];
-        let parts = [self.serial_number, self.safety_sequence, now_us, self.noise];
-        for (target, part) in seed.as_chunks_mut::<4>().0.iter_mut().zip(parts) {
-            *target = part.to_le_bytes();
+        let mut seed = Writer::default();
+        for part in [self.serial_number, self.safety_sequence, now_us, self.noise] {
+            seed.put(part.to_le_bytes());
         }
-        seed
+        seed.bytes()
     }
 }
 
@@ -97,14 +97,11 @@ impl Secret {
     /// Its record.
     #[must_use]
     pub fn to_record(&self) -> [u8; RECORD_BYTES] {
-        let mut record = [0; RECORD_BYTES];
-        let checksum = checksum(&self.0).to_le_bytes();
-        let parts = MAGIC.iter().chain(&self.0).chain(&checksum);
-        record
-            .iter_mut()
-            .zip(parts)
-            .for_each(|(target, byte)| *target = *byte);
-        record
+        let mut record = Writer::default();
+        record.put(MAGIC);
+        record.put(self.0);
+        record.put(checksum(&self.0).to_le_bytes());
+        record.bytes()
     }
 
     /// The response to a challenge: its HMAC-SHA-256 under this secret.

@@ -43,6 +43,12 @@ impl Divisor {
     }
 }
 
+/// One step of a first-order lag: `value` comes closer to `goal` by the difference over the lag in steps.
+#[must_use]
+pub fn behind(value: i32, goal: i32, lag: Divisor) -> i32 {
+    value.saturating_add(lag.divide(goal.saturating_sub(value)))
+}
+
 /// `a * b / c`, exact product, rounded to nearest with halves away from zero, saturating.
 ///
 /// Most products fit a word, for which few instructions will do.

@@ -7,7 +7,8 @@
 //! From the bottom to the top:
 //!
 //! * [`units`] and [`fixed`]: integers with their unit in the type, and the few operations that they are built from;
-//!   [`crc32`] and [`fnv`] for checksums and keys; [`piston`] between flow and speed,
+//!   [`crc32`] and [`fnv`] for checksums and keys; [`piston`] between flow and speed; [`codes!`] for enumerations with
+//!   codes; [`image`] for fixed images of numbers,
 //! * [`calibration`]: what a machine can be taught, as the ECU stores it,
 //! * [`signals`]: inputs and outputs of a step, currents of the coils, and the codes of faults and trips.
 //!
@@ -31,9 +32,11 @@
 extern crate std;
 
 pub mod calibration;
+mod codes;
 pub mod crc32;
 pub mod fixed;
 pub mod fnv;
+pub mod image;
 pub mod piston;
 pub mod signals;
 pub mod units;

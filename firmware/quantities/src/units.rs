@@ -19,8 +19,9 @@ pub trait Quantity: Copy {
     fn counts(self) -> i32;
 }
 
-macro_rules! quantity {
-    ($(#[$doc:meta])* $name:ident, $suffix:literal, $counts:literal) => {
+/// Declares quantities: `Name, "suffix of the engineering unit", raw counts in one;`.
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $name:ident, $suffix:literal, $counts:literal;)+) => {$(
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[repr(transparent)]
@@ -80,125 +81,69 @@ macro_rules! quantity {
                 self.0
             }
         }
-    };
+    )+};
 }
 
-quantity!(
+quantities! {
     /// Angle of the rocker arm (grows as the hitch rises), in millidegrees.
-    MilliDegree, "deg", 1000
-);
-quantity!(
+    MilliDegree, "deg", 1000;
     /// Angular speed of the rocker arm (positive: rising), in millidegrees a second.
-    MilliDegreePerSecond, "deg_per_s", 1000
-);
-quantity!(
+    MilliDegreePerSecond, "deg_per_s", 1000;
     /// Piston travel (grows as the hitch rises), in micrometres.
-    Micrometre, "mm", 1000
-);
-quantity!(
+    Micrometre, "mm", 1000;
     /// Piston speed (positive: rising), in micrometres a second.
-    MicrometrePerSecond, "mm_per_s", 1000
-);
-quantity!(
+    MicrometrePerSecond, "mm_per_s", 1000;
     /// Piston acceleration, in millimetres per second squared.
-    MillimetrePerSecondSquared, "mm_per_s2", 1
-);
-quantity!(
+    MillimetrePerSecondSquared, "mm_per_s2", 1;
     /// Piston area, in square millimetres.
-    SquareMillimetre, "mm2", 1
-);
-quantity!(
+    SquareMillimetre, "mm2", 1;
     /// Oil flow, in microlitres (cubic millimetres) a second; 1 l/min is 16 667 of them.
-    MicroLitrePerSecond, "ul_per_s", 1
-);
-quantity!(
+    MicroLitrePerSecond, "ul_per_s", 1;
     /// Coil current, in milliamperes.
-    MilliAmp, "a", 1000
-);
-quantity!(
+    MilliAmp, "a", 1000;
     /// Slope of a coil current, in amperes a second, which is milliamperes a millisecond.
-    AmperePerSecond, "a_per_s", 1
-);
-quantity!(
+    AmperePerSecond, "a_per_s", 1;
     /// Slow slope of a coil current, in milliamperes a second, which is microamperes a millisecond.
-    MilliAmpPerSecond, "a_per_s", 1000
-);
-quantity!(
+    MilliAmpPerSecond, "a_per_s", 1000;
     /// Pressure above ambient, in millibars.
-    MilliBar, "bar", 1000
-);
-quantity!(
+    MilliBar, "bar", 1000;
     /// Temperature, in thousandths of a degree Celsius.
-    MilliCelsius, "c", 1000
-);
-quantity!(
+    MilliCelsius, "c", 1000;
     /// Supply voltage, in millivolts.
-    MilliVolt, "v", 1000
-);
-quantity!(
+    MilliVolt, "v", 1000;
     /// Time, in milliseconds: the controller's own steps.
-    Millisecond, "ms", 1
-);
-quantity!(
+    Millisecond, "ms", 1;
     /// Time by a free-running clock, in microseconds.
-    Microsecond, "us", 1
-);
-quantity!(
+    Microsecond, "us", 1;
     /// Share of the supply voltage, in thousandths of a percent.
-    Duty, "percent", 1000
-);
-quantity!(
+    Duty, "percent", 1000;
     /// Resistance, in milliohms; also a gain from current to voltage.
-    MilliOhm, "ohm", 1000
-);
-quantity!(
+    MilliOhm, "ohm", 1000;
     /// Change of a resistance, in milliohms a second.
-    MilliOhmPerSecond, "ohm_per_s", 1000
-);
-quantity!(
+    MilliOhmPerSecond, "ohm_per_s", 1000;
     /// A share, in thousandths.
-    PerMille, "percent", 10
-);
-quantity!(
+    PerMille, "percent", 10;
     /// Speed of the engine, in revolutions a minute.
-    RevolutionPerMinute, "rpm", 1
-);
-quantity!(
+    RevolutionPerMinute, "rpm", 1;
     /// A number of occurrences.
-    Count, "count", 1
-);
-quantity!(
+    Count, "count", 1;
     /// A gain from distance to speed, in 1/s.
-    PerSecond, "per_s", 1
-);
-quantity!(
+    PerSecond, "per_s", 1;
     /// Output of a ratiometric sensor over its supply, in thousandths of a percent.
-    SupplyShare, "percent", 1000
-);
-quantity!(
+    SupplyShare, "percent", 1000;
     /// Force, in newtons; a draft is positive when the implement is pulled.
-    Newton, "n", 1
-);
-quantity!(
+    Newton, "n", 1;
     /// Change of a force with the angle of the rocker arm, in newtons a degree.
-    NewtonPerDegree, "n_per_deg", 1
-);
-quantity!(
+    NewtonPerDegree, "n_per_deg", 1;
     /// A gain from pressure to piston speed, in micrometres a second for a bar.
-    MicrometrePerSecondPerBar, "mm_per_s_per_bar", 1000
-);
-quantity!(
+    MicrometrePerSecondPerBar, "mm_per_s_per_bar", 1000;
     /// Frequency, in millihertz.
-    MilliHertz, "hz", 1000
-);
-quantity!(
+    MilliHertz, "hz", 1000;
     /// Length along the ground, in millimetres.
-    Millimetre, "m", 1000
-);
-quantity!(
+    Millimetre, "m", 1000;
     /// Speed over the ground or of the wheels, in millimetres a second.
-    MillimetrePerSecond, "m_per_s", 1000
-);
+    MillimetrePerSecond, "m_per_s", 1000;
+}
 
 impl PerMille {
     /// The whole.
@@ -215,6 +160,12 @@ impl Millisecond {
     #[must_use]
     pub fn next(self) -> Self {
         self + Self(1)
+    }
+
+    /// For how long a condition has held, one controller step later: zero after a step in which it does not hold.
+    #[must_use]
+    pub fn counted_while(self, holds: bool) -> Self {
+        if holds { self.next() } else { Self::ZERO }
     }
 
     /// This time as a divisor (at least one step).

@@ -57,16 +57,9 @@ impl Button {
         let switches = &inputs.switches;
         let agree = !has_second_contact
             || (switches.up_released != (up || both) && switches.down_released != (down || both));
-        self.idle_for = if idle && agree {
-            self.idle_for.next().min(BOUNCE)
-        } else {
-            Millisecond::ZERO
-        };
-        self.contradicts_for = if agree {
-            Millisecond::ZERO
-        } else {
-            self.contradicts_for.next().min(CONTRADICTION)
-        };
+        self.idle_for = self.idle_for.counted_while(idle && agree).min(BOUNCE);
+        let contradicts_for = self.contradicts_for.counted_while(!agree);
+        self.contradicts_for = contradicts_for.min(CONTRADICTION);
         if self.contradicts_for >= CONTRADICTION {
             self.state = State::Distrusted;
         } else if self.idle_for >= BOUNCE {

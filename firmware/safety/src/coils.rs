@@ -37,11 +37,7 @@ impl CoilWatch {
         ];
         for ((asked, measured), off_for) in coils.into_iter().zip(&mut self.off_for) {
             let off = asked <= MilliAmp::ZERO;
-            *off_for = if off {
-                off_for.next().min(parameters.decay_time)
-            } else {
-                Millisecond::ZERO
-            };
+            *off_for = off_for.counted_while(off).min(parameters.decay_time);
             let Some(measured) = measured else {
                 continue;
             };

@@ -238,11 +238,8 @@ impl Envelope {
     }
 
     fn count_health(&mut self, parameters: &LockParameters) {
-        self.calm_for = if self.debounce.is_calm() {
-            self.calm_for.next().min(parameters.healthy_time)
-        } else {
-            Millisecond::ZERO
-        };
+        let calm_for = self.calm_for.counted_while(self.debounce.is_calm());
+        self.calm_for = calm_for.min(parameters.healthy_time);
         self.healthy = self.calm_for >= parameters.healthy_time;
     }
 

@@ -47,11 +47,8 @@ impl Locks {
         self.engine_known |= speed.is_some();
         let required = self.engine_known || parameters.engine_required.0 != 0;
         let runs = speed.is_some_and(|speed| speed > parameters.engine_running);
-        self.running_for = if runs {
-            self.running_for.next().min(parameters.engine_settling)
-        } else {
-            Millisecond::ZERO
-        };
+        let running_for = self.running_for.counted_while(runs);
+        self.running_for = running_for.min(parameters.engine_settling);
         !required || runs && self.running_for >= parameters.engine_settling
     }
 }

@@ -60,10 +60,7 @@ impl RideWatch {
     }
 
     fn receive(&mut self, speed: Option<MillimetrePerSecond>, time_out: Millisecond) {
-        self.age = match speed {
-            Some(_) => Millisecond::ZERO,
-            None => self.age.next(),
-        };
+        self.age = self.age.counted_while(speed.is_none());
         self.speed = speed.or(self.speed).filter(|_| self.age <= time_out);
     }
 

@@ -24,7 +24,7 @@
 use hitch_quantities::calibration::design_parameters::TeachParameters;
 use hitch_quantities::calibration::linkage::LinkageTable;
 use hitch_quantities::calibration::valve_table::ValveTable;
-use hitch_quantities::fixed::Divisor;
+use hitch_quantities::fixed::{Divisor, behind};
 use hitch_quantities::units::{Micrometre, MilliAmp, MilliDegree, Millisecond};
 use hitch_quantities::{Calibration, CoilCurrents};
 
@@ -245,7 +245,7 @@ impl Teach {
         let now = angle.0.saturating_mul(1000);
         let before = self.filtered_udeg.unwrap_or(now);
         let time = calibration.teach.filter_time.divisor();
-        let next = before.saturating_add(time.divide(now.saturating_sub(before)));
+        let next = behind(before, now, time);
         self.filtered_udeg = Some(next);
         MilliDegree(Divisor::THOUSAND.divide(next))
     }

@@ -1,7 +1,7 @@
 //! Model of the hitch during teaching: the response of the calibrated valve to the same current.
 
 use hitch_quantities::Calibration;
-use hitch_quantities::fixed::Divisor;
+use hitch_quantities::fixed::{Divisor, behind};
 use hitch_quantities::piston::piston_speed;
 use hitch_quantities::units::{Micrometre, MilliAmp};
 
@@ -31,8 +31,7 @@ impl Twin {
             Direction::Lift => lift_lag,
             Direction::Lower => lower_lag,
         };
-        let error = current_ua.saturating_sub(self.spool_ua);
-        self.spool_ua = self.spool_ua.saturating_add(lag.divisor().divide(error));
+        self.spool_ua = behind(self.spool_ua, current_ua, lag.divisor());
         let spool = MilliAmp(Divisor::THOUSAND.divide(self.spool_ua));
         let flow = match direction {
             Direction::Lift => calibration.lift.flow(spool),
@@ -41,8 +40,7 @@ impl Twin {
         let speed = piston_speed(flow, calibration.hydraulics.piston_area);
         self.travel_nm = self.travel_nm.saturating_add(speed.0);
         let time = calibration.teach.filter_time.divisor();
-        let behind = self.travel_nm.saturating_sub(self.filtered_nm);
-        self.filtered_nm = self.filtered_nm.saturating_add(time.divide(behind));
+        self.filtered_nm = behind(self.filtered_nm, self.travel_nm, time);
         Micrometre(Divisor::THOUSAND.divide(self.filtered_nm))
     }
 }

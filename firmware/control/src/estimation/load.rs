@@ -6,7 +6,7 @@
 //! stays on the hitch.
 
 use hitch_quantities::calibration::design_parameters::HydraulicParameters;
-use hitch_quantities::fixed::{Divisor, mul_div, mul_shift_16};
+use hitch_quantities::fixed::{Divisor, behind, mul_div, mul_shift_16};
 use hitch_quantities::units::{MicrometrePerSecond, MilliBar};
 
 use super::motion_observer::MotionObserver;
@@ -87,9 +87,8 @@ impl LoadEstimate {
             self.has_sensor = true;
             self.resting_microbar = pressure;
         }
-        let error = pressure.saturating_sub(self.resting_microbar);
-        let step = hydraulics.pressure_filter.divisor().divide(error);
-        self.resting_microbar = self.resting_microbar.saturating_add(step);
+        let time = hydraulics.pressure_filter.divisor();
+        self.resting_microbar = behind(self.resting_microbar, pressure, time);
     }
 
     fn learn(&mut self, motion: &MotionObserver, hydraulics: &HydraulicParameters) {

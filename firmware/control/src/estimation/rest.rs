@@ -2,7 +2,7 @@
 //! oscillating load.
 
 use hitch_quantities::calibration::design_parameters::HoldParameters;
-use hitch_quantities::fixed::Divisor;
+use hitch_quantities::fixed::{Divisor, behind};
 use hitch_quantities::units::Micrometre;
 
 /// Averaged position; it follows without delay at the start and while the hitch does not rest.
@@ -21,11 +21,8 @@ impl RestPosition {
             Divisor::ONE
         };
         self.started = true;
-        let error = position
-            .0
-            .saturating_mul(1000)
-            .saturating_sub(self.nanometre);
-        self.nanometre = self.nanometre.saturating_add(time.divide(error));
+        let position_nm = position.0.saturating_mul(1000);
+        self.nanometre = behind(self.nanometre, position_nm, time);
     }
 
     /// The average.

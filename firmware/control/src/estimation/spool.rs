@@ -1,6 +1,6 @@
 //! Model of a spool and its solenoid.
 
-use hitch_quantities::fixed::Divisor;
+use hitch_quantities::fixed::{Divisor, behind};
 use hitch_quantities::units::MilliAmp;
 
 /// Model of solenoid and spool: hysteresis (play) and first-order lag, as current on the rising branch.
@@ -20,8 +20,7 @@ impl Spool {
         }
         self.play = self.play.limited(coil, coil + hysteresis);
         let goal = self.play.0.saturating_mul(1000);
-        let error = goal.saturating_sub(self.microampere);
-        self.microampere = self.microampere.saturating_add(lag.divide(error));
+        self.microampere = behind(self.microampere, goal, lag);
         MilliAmp(Divisor::THOUSAND.divide(self.microampere))
     }
 }

@@ -82,15 +82,10 @@ impl ButtonGuard {
     }
 
     fn count(&mut self, reading: Reading) {
-        let next = |is: bool, time: Millisecond, most: Millisecond| {
-            if is {
-                time.next().min(most)
-            } else {
-                Millisecond::ZERO
-            }
-        };
-        self.released_for = next(reading == Reading::Released, self.released_for, STEADY);
-        self.unclear_for = next(reading == Reading::Unclear, self.unclear_for, ON_THE_WAY);
+        let is_released = reading == Reading::Released;
+        let is_unclear = reading == Reading::Unclear;
+        self.released_for = self.released_for.counted_while(is_released).min(STEADY);
+        self.unclear_for = self.unclear_for.counted_while(is_unclear).min(ON_THE_WAY);
         if self.released_for >= STEADY {
             self.trusted = true;
             self.began_at = None;

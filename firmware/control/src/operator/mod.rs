@@ -35,12 +35,10 @@ impl EngineWatch {
             self.running_for = Millisecond::ZERO;
             return !self.was_known && parameters.engine_required.0 == 0;
         };
-        self.running_for = if speed > parameters.engine_running {
-            self.running_for.next().min(parameters.engine_settling)
-        } else {
-            Millisecond::ZERO
-        };
-        self.running_for >= parameters.engine_settling && speed > parameters.engine_running
+        let runs = speed > parameters.engine_running;
+        let running_for = self.running_for.counted_while(runs);
+        self.running_for = running_for.min(parameters.engine_settling);
+        self.running_for >= parameters.engine_settling && runs
     }
 }
 
@@ -115,13 +113,9 @@ impl Float {
             };
             return self.floating;
         }
-        self.lifted_for = if lever >= parameters.float_exit {
-            self.lifted_for.next()
-        } else {
-            Millisecond::ZERO
-        };
-        self.floating =
-            lever < parameters.float_exit || self.lifted_for < parameters.float_exit_time;
+        let is_lifted = lever >= parameters.float_exit;
+        self.lifted_for = self.lifted_for.counted_while(is_lifted);
+        self.floating = !is_lifted || self.lifted_for < parameters.float_exit_time;
         self.floating
     }
 

@@ -13,10 +13,10 @@
 use hitch_quantities::fixed::{Divisor, mul_div, mul_shift_16};
 use hitch_quantities::units::{MilliDegree, MilliHertz, Millimetre, MillimetrePerSecond};
 
+use super::low_pass::RADIAN;
+
 /// Fraction bits of the integral.
 const BITS: u32 = 10;
-/// `2 pi / 10^6` times 2^32: from millihertz, or millihertz times milliseconds, to a share of 2^-16.
-const RADIAN: i32 = 26_986;
 /// Largest magnitude of an angle in the loop: a full turn.
 const LARGEST: MilliDegree = MilliDegree(360_000);
 /// Lowest speed of the lag's time: half of walking speed.

@@ -7,8 +7,9 @@ use hitch_quantities::units::MilliHertz;
 const BITS: u32 = 4;
 /// Largest magnitude of a sample that its fraction bits leave room for.
 const LARGEST: i32 = i32::MAX >> (BITS + 1);
-/// `2 pi / 10^6` times 2^32: a share of 2^-16 from a frequency in millihertz, in one product.
-const SHARE: i32 = 26_986;
+/// `2 pi / 10^6` times 2^32: a share of 2^-16 from a frequency in millihertz, or from millihertz times milliseconds, in one
+/// product.
+pub const RADIAN: i32 = 26_986;
 
 /// The filter, of any quantity; its first sample is its first output.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,7 +22,7 @@ impl LowPass {
     pub fn step(&mut self, sample: i32, corner: MilliHertz) -> i32 {
         let sample = sample.clamp(-LARGEST, LARGEST) << BITS;
         let before = self.fine.unwrap_or(sample);
-        let share = mul_shift_16(corner.0, SHARE).min(1 << 16);
+        let share = mul_shift_16(corner.0, RADIAN).min(1 << 16);
         let after = before.saturating_add(mul_shift_16(sample.saturating_sub(before), share));
         self.fine = Some(after);
         after >> BITS

@@ -155,11 +155,7 @@ impl ReferenceControl {
         } else {
             Signal::Suspect
         };
-        self.rested_for = if moves {
-            Millisecond::ZERO
-        } else {
-            self.rested_for.next()
-        };
+        self.rested_for = self.rested_for.counted_while(!moves);
         self.sensed = Sensed {
             draft,
             depth,

@@ -4,7 +4,7 @@
 //! speed (patents of New Holland average it so).
 
 use hitch_quantities::calibration::field_parameters::SlipParameters;
-use hitch_quantities::fixed::{Divisor, mul_div, mul_shift_16};
+use hitch_quantities::fixed::{Divisor, behind, mul_div, mul_shift_16};
 use hitch_quantities::units::{MillimetrePerSecond, PerMille};
 use hitch_quantities::{Inputs, Trouble};
 
@@ -110,9 +110,8 @@ impl SlipSignal {
         let present = present
             .max(ONE.saturating_sub(range))
             .min(ONE.saturating_add(range));
-        let away = (present << BITS).saturating_sub(self.factor);
-        let change = parameters.radius_time.divisor().divide(away);
-        self.factor = self.factor.saturating_add(change);
+        let time = parameters.radius_time.divisor();
+        self.factor = behind(self.factor, present << BITS, time);
     }
 }
 

@@ -122,11 +122,7 @@ pub struct Still {
 impl Still {
     /// One step.
     pub fn step(&mut self, sample: Option<SupplyShare>) -> Millisecond {
-        self.since = if sample == self.last {
-            self.since.next()
-        } else {
-            Millisecond::ZERO
-        };
+        self.since = self.since.counted_while(sample == self.last);
         self.last = sample;
         self.since
     }

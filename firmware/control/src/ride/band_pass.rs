@@ -10,10 +10,7 @@ use hitch_quantities::calibration::field_parameters::RideParameters;
 use hitch_quantities::fixed::{Divisor, mul_div, mul_shift_16};
 use hitch_quantities::units::MilliBar;
 
-use crate::reference::low_pass::LowPass;
-
-/// `2 pi / 10^6` times 2^32: the share of 2^-16 by which a low-pass follows in a millisecond, from a frequency in millihertz.
-const SHARE: i32 = 26_986;
+use crate::reference::low_pass::{LowPass, RADIAN};
 
 /// The filter.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,7 +25,7 @@ impl BandPass {
         let mean = self.mean.step(pressure.0, parameters.low_corner);
         let swing = pressure.0.saturating_sub(mean);
         let band = self.band.step(swing, parameters.high_corner);
-        let share = mul_shift_16(parameters.high_corner.0, SHARE);
+        let share = mul_shift_16(parameters.high_corner.0, RADIAN);
         let lead = share.saturating_mul(parameters.lead.0);
         let ahead = mul_div(
             swing.saturating_sub(band),

@@ -71,11 +71,8 @@ impl StallDetector {
         let full = pump_pressure.is_some_and(|pressure| {
             pressure >= hydraulics.relief_pressure - hydraulics.relief_margin
         });
-        self.near_relief = if full && direction == Direction::Lift {
-            self.near_relief.next()
-        } else {
-            Millisecond::ZERO
-        };
+        let is_near = full && direction == Direction::Lift;
+        self.near_relief = self.near_relief.counted_while(is_near);
         self.compare(direction, motion, parameters) || self.near_relief >= parameters.relief_time
     }
 

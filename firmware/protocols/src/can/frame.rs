@@ -51,6 +51,27 @@ impl Frame {
         })
     }
 
+    /// The frame of a controller's registers, if `length` is at most eight; bytes beyond it don't count.
+    #[must_use]
+    pub fn from_padded(
+        id: Id,
+        is_remote: bool,
+        length: u8,
+        bytes: [u8; Self::MOST_BYTES],
+    ) -> Option<Self> {
+        if is_remote {
+            Self::remote_frame(id, length.into())
+        } else {
+            Self::data_frame(id, bytes.get(..length.into())?)
+        }
+    }
+
+    /// Its bytes as a controller's registers have them, filled up with zeros.
+    #[must_use]
+    pub const fn padded(&self) -> [u8; Self::MOST_BYTES] {
+        self.bytes
+    }
+
     /// Identifier.
     #[must_use]
     pub const fn id(&self) -> Id {

@@ -2,7 +2,7 @@
 
 use super::heartbeat;
 use super::id::{Id, Pgn};
-use super::time::since_ms;
+use super::time::is_due;
 use crate::can::Frame;
 
 /// Nobody is asked for a heartbeat, or for a claim, more often than this, ms.
@@ -12,7 +12,7 @@ const PRIORITY: u8 = 6;
 
 /// Who is to be asked now.
 fn next(whom: &mut Option<u8>, asked_ms: &mut Option<u32>, now_ms: u32) -> Option<u8> {
-    let is_spaced = asked_ms.is_none_or(|asked| since_ms(asked, now_ms) >= SPACING_MS);
+    let is_spaced = is_due(*asked_ms, SPACING_MS, now_ms);
     let node = whom.take_if(|_| is_spaced)?;
     *asked_ms = Some(now_ms);
     Some(node)
@@ -51,10 +51,7 @@ impl Asking {
 
     /// The next question that is due.
     pub fn poll(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
-        let to = |pgn, destination| Id {
-            destination,
-            ..Id::broadcast(pgn, PRIORITY, source)
-        };
+        let to = |pgn, node| Id::broadcast(pgn, PRIORITY, source).to(node);
         if let Some(node) = next(&mut self.unwatched, &mut self.heartbeat_ms, now_ms) {
             let [a, b, c] = Pgn::HEARTBEAT.to_bytes();
             let period = heartbeat::PERIOD_MS as u8;

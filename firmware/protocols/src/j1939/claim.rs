@@ -17,7 +17,7 @@
 
 use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::name::Name;
-use super::time::{reached, since_ms};
+use super::time::{is_due, reached, since_ms};
 use crate::can::Frame;
 
 /// Waiting time after a claim, ms.
@@ -131,10 +131,7 @@ impl AddressClaim {
 
     /// Another node sends from our address: the claim is repeated, at a limited rate.
     pub fn address_violated(&mut self, now_ms: u32) {
-        let reminded = self
-            .last_sent_ms
-            .is_some_and(|last| since_ms(last, now_ms) < REMINDER_MS);
-        if !reminded {
+        if is_due(self.last_sent_ms, REMINDER_MS, now_ms) {
             self.owe(now_ms);
         }
     }
@@ -149,10 +146,7 @@ impl AddressClaim {
             _ => {}
         }
         let due = self.due_ms.is_some_and(|due| reached(due, now_ms));
-        let spaced = self
-            .last_sent_ms
-            .is_none_or(|last| since_ms(last, now_ms) >= LEAST_SPACING_MS);
-        if !(due && spaced) {
+        if !(due && is_due(self.last_sent_ms, LEAST_SPACING_MS, now_ms)) {
             return None;
         }
         self.due_ms = None;
@@ -162,12 +156,7 @@ impl AddressClaim {
             since_ms.get_or_insert(now_ms);
         }
         let source = self.claimed_or_claiming().unwrap_or(NULL);
-        let id = Id {
-            priority: PRIORITY,
-            pgn: Pgn::ADDRESS_CLAIMED,
-            destination: GLOBAL,
-            source,
-        };
+        let id = Id::broadcast(Pgn::ADDRESS_CLAIMED, PRIORITY, source);
         Some(id.frame(self.name.to_bytes()))
     }
 

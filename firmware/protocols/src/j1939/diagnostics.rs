@@ -9,7 +9,7 @@
 
 use heapless::Vec;
 
-use super::time::since_ms;
+use super::time::is_due;
 use super::trouble::{Trouble, Troubles};
 
 /// Minimum interval of DM1, ms, and its interval while a code is active.
@@ -100,10 +100,7 @@ impl Diagnostics {
     /// Whether DM1 is due. A change is reported at once, after the minimum interval.
     #[must_use]
     pub fn due(&self, now_ms: u32) -> bool {
-        let waited = self
-            .sent_ms
-            .is_none_or(|sent| since_ms(sent, now_ms) >= DM1_PERIOD_MS);
-        waited
+        is_due(self.sent_ms, DM1_PERIOD_MS, now_ms)
             && match self.variant {
                 Variant::J1939 => true,
                 Variant::Iso11783 => !self.active.is_empty(),

@@ -6,13 +6,11 @@
 
 use hitch_quantities::units::RevolutionPerMinute;
 
+use super::scale::data;
 use super::time::since_ms;
 
 /// Time-out after which the speed is unknown, ms. EEC1 is sent every 10 to 100 ms.
 pub const TIMEOUT_MS: u32 = 300;
-/// Largest raw value of a two-byte quantity that is data; reserved values, errors (FExx) and "not available" (FFxx) are
-/// above.
-const LARGEST: u16 = 0xFAFF;
 /// Raw counts of 1/min.
 const COUNTS_PER_RPM: u16 = 8;
 
@@ -80,6 +78,5 @@ impl EngineSpeed {
 
 /// The speed in a message, rounded down.
 fn speed([_, _, _, low, high, ..]: &[u8; 8]) -> Option<RevolutionPerMinute> {
-    let raw = u16::from_le_bytes([*low, *high]);
-    (raw <= LARGEST).then(|| RevolutionPerMinute(i32::from(raw / COUNTS_PER_RPM)))
+    data([*low, *high]).map(|raw| RevolutionPerMinute(i32::from(raw / COUNTS_PER_RPM)))
 }

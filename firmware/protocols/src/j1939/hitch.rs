@@ -3,8 +3,10 @@
 //! A one-byte quantity is data up to 250; 251 to 253 are reserved, 254 says that the sender's signal is
 //! bad, 255 that there is none. Unused bits are ones.
 
+use hitch_quantities::codes;
 use hitch_quantities::units::{Millisecond, Newton, PerMille};
 
+use super::scale::{self, Scale};
 use super::trouble::Troubles;
 
 /// Largest raw value of a one-byte quantity that is data.
@@ -15,16 +17,16 @@ const ERROR: u8 = 254;
 const NOT_AVAILABLE: u8 = 255;
 /// Positions have 0.4 % a bit.
 const PER_MILLE_PER_BIT: i32 = 4;
-/// Resolution of the draft.
-const NEWTON_PER_BIT: i32 = 10;
-/// Draft of the raw value 0.
-const LEAST_DRAFT: Newton = Newton(-320_000);
-/// Largest raw value of the draft that is data.
-const LARGEST_DRAFT: i32 = 0xFAFF;
-/// Largest raw value of a time that is data.
-const LARGEST_TIME: i32 = 0xFAFF;
-/// Raw value of the draft: the signal is bad.
-const DRAFT_ERROR: u16 = 0xFE00;
+/// Draft: 10 N a bit from -320 kN.
+const DRAFT: Scale = Scale {
+    offset: -320_000,
+    per_bit: 10,
+};
+/// A time: 1 ms a bit.
+const TIME: Scale = Scale {
+    offset: 0,
+    per_bit: 1,
+};
 
 /// What the controller tells the bus about the hitch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,29 +52,19 @@ pub struct HitchStatus {
     pub troubles: Troubles,
 }
 
-/// In-work indication (SPN 1877), 2 bits: the hitch is below or above an adjustable threshold.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum InWork {
-    /// Out of work.
-    No = 0,
-    /// In work.
-    Yes = 1,
-    /// The sensor is bad.
-    Error = 2,
-    /// There is no threshold.
-    #[default]
-    NotAvailable = 3,
-}
-
-impl InWork {
-    const fn from_bits(bits: u8) -> Self {
-        match bits & 0x03 {
-            0 => Self::No,
-            1 => Self::Yes,
-            2 => Self::Error,
-            _ => Self::NotAvailable,
-        }
+codes! {
+    /// In-work indication (SPN 1877), 2 bits: the hitch is below or above an adjustable threshold.
+    #[derive(Default)]
+    InWork: u8 {
+        /// Out of work.
+        No = 0;
+        /// In work.
+        Yes = 1;
+        /// The sensor is bad.
+        Error = 2;
+        /// There is no threshold.
+        #[default]
+        NotAvailable = 3;
     }
 }
 
@@ -102,94 +94,70 @@ pub enum Limit {
     NonRecoverable,
 }
 
-/// Position limit status (SPN 5151), 3 bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum LimitStatus {
-    /// The command acts.
-    NotLimited = 0,
-    /// The operator has control.
-    OperatorLimited = 1,
-    /// Only lower values act.
-    LimitedHigh = 2,
-    /// Only higher values act.
-    LimitedLow = 3,
-    /// 4 and 5.
-    Reserved = 4,
-    /// Fault that only a restart clears.
-    NonRecoverable = 6,
-    /// Not available.
-    NotAvailable = 7,
-}
-
-impl LimitStatus {
-    const fn from_bits(bits: u8) -> Self {
-        match bits & 0x07 {
-            0 => Self::NotLimited,
-            1 => Self::OperatorLimited,
-            2 => Self::LimitedHigh,
-            3 => Self::LimitedLow,
-            6 => Self::NonRecoverable,
-            7 => Self::NotAvailable,
-            _ => Self::Reserved,
-        }
+codes! {
+    /// Position limit status (SPN 5151), 3 bits.
+    LimitStatus: u8 {
+        /// The command acts.
+        NotLimited = 0;
+        /// The operator has control.
+        OperatorLimited = 1;
+        /// Only lower values act.
+        LimitedHigh = 2;
+        /// Only higher values act.
+        LimitedLow = 3;
+        /// 4 and 5.
+        Reserved = 4;
+        /// Fault that only a restart clears.
+        NonRecoverable = 6;
+        /// Not available.
+        NotAvailable = 7;
     }
 }
 
-macro_rules! exit_codes {
-    ($($(#[$doc:meta])+ $name:ident = $code:literal,)+) => {
-        /// Exit or reason code (SPN 5819), 6 bits: why the hitch left remote control, or can't be in it.
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-        #[repr(u8)]
-        pub enum ExitCode {
-            $($(#[$doc])+ $name = $code,)+
-        }
-
-        impl ExitCode {
-            /// The reason of 6 bits; reserved ones are not available.
-            #[must_use]
-            pub const fn from_bits(bits: u8) -> Self {
-                match bits & 0x3F {
-                    $($code => Self::$name,)+
-                    _ => Self::NotAvailable,
-                }
-            }
-        }
-    };
+codes! {
+    /// Exit or reason code (SPN 5819), 6 bits: why the hitch left remote control, or can't be in it.
+    #[derive(Default)]
+    ExitCode: u8 {
+        /// No reason, all clear.
+        #[default]
+        Clear = 0;
+        /// Required level of operator presence not detected.
+        NoOperator = 1;
+        /// The implement gave control back.
+        Released = 2;
+        /// The operator took control.
+        OperatorOverride = 3;
+        /// Operator control not in a valid position.
+        ControlNotValid = 4;
+        /// The commands stopped.
+        Timeout = 5;
+        /// A command was out of range.
+        OutOfRange = 6;
+        /// Not calibrated.
+        NotCalibrated = 7;
+        /// The operator control is faulty.
+        ControlFault = 8;
+        /// The function is faulty.
+        FunctionFault = 9;
+        /// Ground speed too high.
+        SpeedTooHigh = 17;
+        /// Oil level too low.
+        OilLevelLow = 20;
+        /// Hitch locked out.
+        LockedOut = 21;
+        /// Error.
+        Error = 62;
+        /// Not available.
+        NotAvailable = 63;
+    }
 }
 
-exit_codes! {
-    /// No reason, all clear.
-    #[default]
-    Clear = 0,
-    /// Required level of operator presence not detected.
-    NoOperator = 1,
-    /// The implement gave control back.
-    Released = 2,
-    /// The operator took control.
-    OperatorOverride = 3,
-    /// Operator control not in a valid position.
-    ControlNotValid = 4,
-    /// The commands stopped.
-    Timeout = 5,
-    /// A command was out of range.
-    OutOfRange = 6,
-    /// Not calibrated.
-    NotCalibrated = 7,
-    /// The operator control is faulty.
-    ControlFault = 8,
-    /// The function is faulty.
-    FunctionFault = 9,
-    /// Ground speed too high.
-    SpeedTooHigh = 17,
-    /// Oil level too low.
-    OilLevelLow = 20,
-    /// Hitch locked out.
-    LockedOut = 21,
-    /// Error.
-    Error = 62,
-    /// Not available.
-    NotAvailable = 63,
+impl ExitCode {
+    /// The reason of 6 bits; reserved ones are not available.
+    #[must_use]
+    pub fn from_bits(bits: u8) -> Self {
+        Self::from_code(bits & 0x3F).unwrap_or(Self::NotAvailable)
+    }
 }
 
 /// Rear hitch status as it is on the bus.
@@ -245,8 +213,8 @@ impl StatusMessage {
         let [position, flags, lower_link_force, low, high, exit, _, _] = *bytes;
         Self {
             position,
-            in_work: InWork::from_bits(flags >> 6),
-            limit: LimitStatus::from_bits(flags >> 3),
+            in_work: InWork::from_code(flags >> 6).unwrap_or_default(),
+            limit: LimitStatus::from_code(flags >> 3 & 0x07).unwrap_or(LimitStatus::Reserved),
             lower_link_force,
             draft: u16::from_le_bytes([low, high]),
             exit: ExitCode::from_bits(exit),
@@ -285,9 +253,7 @@ pub const fn facilities(is_commanded: bool, has_draft: bool, has_in_work: bool) 
 /// group is a proprietary one: no public group has this time.
 #[must_use]
 pub fn time_until_work(time: Option<Millisecond>) -> [u8; 8] {
-    let raw = time.map_or(u16::MAX, |time| {
-        u16::try_from(time.0.clamp(0, LARGEST_TIME)).unwrap_or(u16::MAX)
-    });
+    let raw = time.map_or(scale::NOT_AVAILABLE, |time| TIME.raw(time.0));
     let [low, high] = raw.to_le_bytes();
     [low, high, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF]
 }
@@ -338,13 +304,9 @@ pub fn raw_position(position: Option<PerMille>) -> u8 {
 /// The raw value of a draft, rounded to nearest; what is beyond the ends is at the end.
 fn raw_draft(draft: Draft) -> u16 {
     match draft {
-        Draft::NotFitted => u16::MAX,
-        Draft::Lost => DRAFT_ERROR,
-        Draft::Measured(draft) => {
-            let above = (draft - LEAST_DRAFT).0.max(0);
-            let rounded = above.saturating_add(NEWTON_PER_BIT / 2) / NEWTON_PER_BIT;
-            u16::try_from(rounded.min(LARGEST_DRAFT)).unwrap_or(DRAFT_ERROR)
-        }
+        Draft::NotFitted => scale::NOT_AVAILABLE,
+        Draft::Lost => scale::ERROR,
+        Draft::Measured(draft) => DRAFT.raw(draft.0),
     }
 }
 

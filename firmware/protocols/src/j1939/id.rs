@@ -116,6 +116,15 @@ impl Id {
         }
     }
 
+    /// The same message to one node.
+    #[must_use]
+    pub const fn to(self, destination: u8) -> Self {
+        Self {
+            destination,
+            ..self
+        }
+    }
+
     /// Unpacks.
     #[must_use]
     pub fn unpack(id: ExtendedId) -> Self {

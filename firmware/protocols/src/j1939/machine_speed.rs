@@ -5,12 +5,11 @@
 
 use hitch_quantities::units::MillimetrePerSecond;
 
+use super::scale::data;
 use super::time::since_ms;
 
 /// Time-out after which another sender is used, ms. The speeds are sent every 100 ms.
 pub const TIMEOUT_MS: u32 = 300;
-/// Largest raw value that is a speed; reserved values, errors (FExx) and "not available" (FFxx) are above.
-const LARGEST: u16 = 0xFAFF;
 
 /// The sender of a speed.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +59,5 @@ impl MachineSpeed {
 /// The speed in a message of either group, forwards or in reverse.
 #[must_use]
 pub fn speed([low, high, ..]: &[u8; 8]) -> Option<MillimetrePerSecond> {
-    let raw = u16::from_le_bytes([*low, *high]);
-    (raw <= LARGEST).then(|| MillimetrePerSecond(i32::from(raw)))
+    data([*low, *high]).map(|raw| MillimetrePerSecond(raw.into()))
 }

@@ -15,23 +15,14 @@ use hitch_quantities::signals::charge::CoilCharge;
 use hitch_quantities::units::{MilliAmp, Millisecond};
 
 use super::id::{GLOBAL, Id, Pgn};
+use super::scale::{NOT_AVAILABLE, Scale};
 use super::time::since_ms;
 use crate::can::Frame;
 
 /// Period of the sample time, milliseconds: below the values that J1939 reserves.
 pub const TIME_WRAPS_MS: u32 = 64_000;
-/// Largest raw value of a two-byte quantity that is data.
-const LARGEST: i32 = 0xFAFF;
-const NOT_AVAILABLE: u16 = 0xFFFF;
 /// Priority of proprietary groups.
 const PRIORITY: u8 = 6;
-
-/// A two-byte quantity: its smallest value, and its resolution, in counts of the controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Scale {
-    offset: i32,
-    per_bit: i32,
-}
 
 /// 1 mA a bit from -32 A.
 const CURRENT: Scale = Scale {
@@ -54,16 +45,9 @@ const VOLTAGE: Scale = Scale {
     per_bit: 1,
 };
 
-impl Scale {
-    /// The raw value of a measurement of at most 20 bits, rounded to nearest and limited to the range.
-    fn raw(self, counts: Option<i32>) -> u16 {
-        let Some(counts) = counts else {
-            return NOT_AVAILABLE;
-        };
-        let above = counts.saturating_sub(self.offset).max(0);
-        let rounded = above.saturating_add(self.per_bit / 2) / self.per_bit.max(1);
-        u16::try_from(rounded.min(LARGEST)).unwrap_or(NOT_AVAILABLE)
-    }
+/// The raw value of a measurement.
+fn raw(scale: Scale, counts: Option<i32>) -> u16 {
+    counts.map_or(NOT_AVAILABLE, |counts| scale.raw(counts))
 }
 
 /// The broadcast.
@@ -98,15 +82,15 @@ impl MeasuredBroadcast {
 fn frames(source: u8, now_ms: u32, inputs: &Inputs, [lift, lower]: [MilliAmp; 2]) -> [Frame; 2] {
     let time = u16::try_from(now_ms % TIME_WRAPS_MS).unwrap_or(NOT_AVAILABLE);
     let motion = [
-        CURRENT.raw(inputs.lift_current.map(|_| lift.0)),
-        CURRENT.raw(inputs.lower_current.map(|_| lower.0)),
-        ANGLE.raw(inputs.rocker_angle.map(|value| value.0)),
+        raw(CURRENT, inputs.lift_current.map(|_| lift.0)),
+        raw(CURRENT, inputs.lower_current.map(|_| lower.0)),
+        raw(ANGLE, inputs.rocker_angle.map(|value| value.0)),
         time,
     ];
     let pressures = [
-        PRESSURE.raw(inputs.cylinder_pressure.map(|value| value.0)),
-        PRESSURE.raw(inputs.pump_pressure.map(|value| value.0)),
-        VOLTAGE.raw(inputs.supply.map(|value| value.0)),
+        raw(PRESSURE, inputs.cylinder_pressure.map(|value| value.0)),
+        raw(PRESSURE, inputs.pump_pressure.map(|value| value.0)),
+        raw(VOLTAGE, inputs.supply.map(|value| value.0)),
         time,
     ];
     let groups = [

@@ -24,6 +24,7 @@ mod node;
 pub mod reception;
 pub mod remote;
 pub mod request;
+mod scale;
 mod tim;
 mod time;
 pub mod transport;

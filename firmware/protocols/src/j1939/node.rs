@@ -20,7 +20,7 @@ use super::reception::Reception;
 use super::remote::{Remote, RemoteControl, Surroundings};
 use super::request::{Acknowledgement, GroupRequest, RequestQueue, acknowledged};
 use super::tim::{Authority, Said, Tim, View};
-use super::time::since_ms;
+use super::time::{is_due, since_ms};
 use super::transport::Transport;
 use crate::can::Frame;
 
@@ -343,9 +343,7 @@ impl Node {
 
     /// Time until the implement is in work, if there is a threshold.
     fn hitch_work(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
-        let is_due = self
-            .work_sent_ms
-            .is_none_or(|sent| since_ms(sent, now_ms) >= STATUS_PERIOD_MS);
+        let is_due = is_due(self.work_sent_ms, STATUS_PERIOD_MS, now_ms);
         if status.in_work == InWork::NotAvailable || !is_due {
             return None;
         }

@@ -3,7 +3,7 @@
 use heapless::Deque;
 
 use super::id::{GLOBAL, Id, NULL, Pgn};
-use super::time::since_ms;
+use super::time::is_due;
 use crate::can::Frame;
 
 /// Capacity of the queue of requests; more are dropped, and their senders repeat them.
@@ -70,12 +70,7 @@ pub enum Acknowledgement {
 #[must_use]
 pub fn acknowledgement(control: Acknowledgement, request: &GroupRequest, source: u8) -> Frame {
     let [a, b, c] = request.group.to_bytes();
-    let id = Id {
-        priority: PRIORITY,
-        pgn: Pgn::ACKNOWLEDGEMENT,
-        destination: GLOBAL,
-        source,
-    };
+    let id = Id::broadcast(Pgn::ACKNOWLEDGEMENT, PRIORITY, source);
     id.frame([control as u8, 0xFF, 0xFF, 0xFF, request.from, a, b, c])
 }
 
@@ -102,9 +97,7 @@ impl RequestQueue {
 
     /// The next request to be answered now.
     pub fn next(&mut self, now_ms: u32) -> Option<GroupRequest> {
-        let spaced = self
-            .answered_ms
-            .is_none_or(|last| since_ms(last, now_ms) >= SPACING_MS);
+        let spaced = is_due(self.answered_ms, SPACING_MS, now_ms);
         let request = self.waiting.front().copied().filter(|_| spaced)?;
         self.waiting.pop_front();
         self.answered_ms = Some(now_ms);

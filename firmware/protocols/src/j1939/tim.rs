@@ -26,7 +26,8 @@ use super::hitch::{ExitCode, HitchCommand, LimitStatus};
 use super::id::{Id, Pgn};
 use super::name::Name;
 use super::request::Acknowledgement;
-use super::time::since_ms;
+use super::scale;
+use super::time::is_due;
 use crate::can::Frame;
 
 /// No client; as a NAME it would be no implement's.
@@ -69,8 +70,6 @@ const LARGEST_POSITION: u16 = 10_000;
 const PER_COMMAND_BIT: u16 = 40;
 /// Bits of a position per thousandth.
 const PER_MILLE: u16 = 10;
-/// The signal is bad.
-const POSITION_ERROR: u16 = 0xFE00;
 /// Released control, requesting an action of the operator.
 const RELEASED: u16 = 0xFBFD;
 /// Ready to control.
@@ -351,9 +350,7 @@ impl Tim {
             let id = Id::broadcast(Pgn::TIM_SERVER, STATUS_PRIORITY, source);
             return Some(Said::Frame(id.frame(bytes)));
         }
-        let is_spaced = self
-            .replied_ms
-            .is_none_or(|last| since_ms(last, now_ms) >= SPACING_MS);
+        let is_spaced = is_due(self.replied_ms, SPACING_MS, now_ms);
         let is_ready = |reply: &Reply| is_spaced && (has_room || *reply != Reply::AssignmentStatus);
         let [first, next] = self.replies;
         let reply = first.filter(is_ready)?;
@@ -380,28 +377,14 @@ impl Tim {
             Reply::Assignment(count, [a, b, c, d, e, f]) => [ASSIGNMENT, count, a, b, c, d, e, f],
             Reply::AssignmentStatus => match self.client() {
                 Some(name) if self.is_assigned => {
-                    let [a, b, c, d, e, f, g, h] = name.to_bytes();
-                    let status = [
-                        ASSIGNMENT_STATUS,
-                        0,
-                        1,
-                        a,
-                        b,
-                        c,
-                        d,
-                        e,
-                        f,
-                        g,
-                        h,
-                        1,
-                        REAR_HITCH,
-                    ];
-                    return Said::Message(status.into_iter().collect());
+                    let head = [ASSIGNMENT_STATUS, 0, 1].into_iter();
+                    let status = head.chain(name.to_bytes()).chain([1, REAR_HITCH]);
+                    return Said::Message(status.collect());
                 }
                 _ => [ASSIGNMENT_STATUS, 1, REAR_HITCH, 0, NO, NO, NO, NO],
             },
             Reply::Function { counter } => {
-                let position = self.view.position.map_or(POSITION_ERROR, |position| {
+                let position = self.view.position.map_or(scale::ERROR, |position| {
                     position.saturating_mul(PER_MILLE).min(LARGEST_POSITION)
                 });
                 let [low, high] = position.to_le_bytes();
@@ -421,11 +404,8 @@ impl Tim {
                     Pgn::TIM_CLIENT
                 };
                 let [a, b, c] = group.to_bytes();
-                let id = Id {
-                    destination: to,
-                    ..Id::broadcast(Pgn::ACKNOWLEDGEMENT, PRIORITY, source)
-                };
-                return Said::Frame(id.frame([control as u8, code, NO, NO, to, a, b, c]));
+                let id = Id::broadcast(Pgn::ACKNOWLEDGEMENT, PRIORITY, source);
+                return Said::Frame(id.to(to).frame([control as u8, code, NO, NO, to, a, b, c]));
             }
         };
         Said::Frame(Id::broadcast(Pgn::TIM_SERVER, PRIORITY, source).frame(bytes))

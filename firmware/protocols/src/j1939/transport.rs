@@ -288,11 +288,6 @@ fn data_frame(bytes: [u8; 8], destination: u8, source: u8) -> Frame {
 }
 
 fn frame(pgn: Pgn, bytes: [u8; 8], destination: u8, source: u8) -> Frame {
-    let id = Id {
-        priority: PRIORITY,
-        pgn,
-        destination,
-        source,
-    };
-    id.frame(bytes)
+    let id = Id::broadcast(pgn, PRIORITY, source);
+    id.to(destination).frame(bytes)
 }

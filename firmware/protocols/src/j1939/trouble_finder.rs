@@ -2,7 +2,7 @@
 
 use hitch_quantities::calibration::design_parameters::{LockParameters, OperatorParameters};
 use hitch_quantities::signals::field;
-use hitch_quantities::units::{MilliAmp, MilliVolt};
+use hitch_quantities::units::{MilliAmp, MilliVolt, Millisecond};
 use hitch_quantities::{Fault, Inputs, Outputs, Trip};
 
 use super::button_monitor::ButtonMonitor;
@@ -21,8 +21,11 @@ enum Coil {
 pub struct TroubleFinder {
     last_asked: Option<Coil>,
     tripped: Option<(Trip, Trouble)>,
-    engine_speed: EngineSpeedMonitor,
-    speeds: SpeedMonitor,
+    /// An engine speed has been received since power-up.
+    engine_known: bool,
+    engine_speed: Missing,
+    /// The speeds of the slip guard.
+    speeds: Missing,
     buttons: ButtonMonitor,
 }
 
@@ -35,17 +38,29 @@ impl TroubleFinder {
         lock: &LockParameters,
         operator: &OperatorParameters,
     ) -> Troubles {
-        let lost = self.engine_speed.is_lost(inputs, lock);
-        let engine = lost.then_some(Troubles::from(Trouble::EngineSpeedLost));
         self.of_controller(inputs, outputs)
-            .union(engine.unwrap_or_default())
+            .union(self.of_engine(inputs, lock))
             .union(self.of_field(outputs.trouble))
             .union(self.buttons.update(inputs, operator))
     }
 
+    /// An engine speed that the engine lock relies on.
+    fn of_engine(&mut self, inputs: &Inputs, lock: &LockParameters) -> Troubles {
+        let is_present = inputs.engine_speed.is_some();
+        self.engine_known |= is_present;
+        let is_needed = self.engine_known || lock.engine_required.0 != 0;
+        let is_lost = self.engine_speed.is_lost(!is_present && is_needed);
+        let found = is_lost.then_some(Trouble::EngineSpeedLost);
+        found.map_or(Troubles::NONE, Troubles::from)
+    }
+
     /// Lost sensors of draft, depth and slip control.
     fn of_field(&mut self, trouble: Option<field::Trouble>) -> Troubles {
-        let is_lost = self.speeds.is_lost(trouble);
+        let is_missing = matches!(
+            trouble,
+            Some(field::Trouble::GroundSpeed | field::Trouble::WheelSpeed)
+        );
+        let is_lost = self.speeds.is_lost(is_missing);
         let found = trouble.and_then(|trouble| match trouble {
             field::Trouble::PinRange => Some(Trouble::DraftPinMissing),
             field::Trouble::PinsDisagree | field::Trouble::PinNoisy => Some(Trouble::DraftPins),
@@ -110,51 +125,18 @@ impl TroubleFinder {
     }
 }
 
-/// How long a speed has to be missing, ms: a start or a change of its sender is no fault.
-const SPEED_LOST_MS: u16 = 1_000;
+/// How long a speed has to be missing: a start or a change of its sender is no fault.
+const SPEED_LOST: Millisecond = Millisecond(1_000);
 
-/// Monitors whether an engine speed that the engine lock relies on is received.
+/// How long a speed has been missing.
 #[derive(Clone, Copy, Debug, Default)]
-struct EngineSpeedMonitor {
-    /// It has been received since power-up.
-    known: bool,
-    missing_ms: u16,
-}
+struct Missing(Millisecond);
 
-impl EngineSpeedMonitor {
-    /// One millisecond.
-    fn is_lost(&mut self, inputs: &Inputs, lock: &LockParameters) -> bool {
-        let is_present = inputs.engine_speed.is_some();
-        self.known |= is_present;
-        let is_missing = !is_present && (self.known || lock.engine_required.0 != 0);
-        self.missing_ms = if is_missing {
-            self.missing_ms.saturating_add(1).min(SPEED_LOST_MS)
-        } else {
-            0
-        };
-        self.missing_ms >= SPEED_LOST_MS
-    }
-}
-
-/// Monitors whether the speeds of the slip guard are received.
-#[derive(Clone, Copy, Debug, Default)]
-struct SpeedMonitor {
-    missing_ms: u16,
-}
-
-impl SpeedMonitor {
-    /// One millisecond.
-    fn is_lost(&mut self, trouble: Option<field::Trouble>) -> bool {
-        let is_missing = matches!(
-            trouble,
-            Some(field::Trouble::GroundSpeed | field::Trouble::WheelSpeed)
-        );
-        self.missing_ms = if is_missing {
-            self.missing_ms.saturating_add(1).min(SPEED_LOST_MS)
-        } else {
-            0
-        };
-        self.missing_ms >= SPEED_LOST_MS
+impl Missing {
+    /// One millisecond; true once the speed is lost.
+    fn is_lost(&mut self, is_missing: bool) -> bool {
+        self.0 = self.0.counted_while(is_missing).min(SPEED_LOST);
+        self.0 >= SPEED_LOST
     }
 }
 

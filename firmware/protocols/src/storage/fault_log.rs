@@ -15,6 +15,7 @@
 use embedded_storage::nor_flash::NorFlash;
 use hitch_quantities::crc32::Crc32;
 
+use super::layout::{address, half_bytes, newest_first};
 use crate::j1939::trouble::Code;
 
 /// Bytes of a slot: what the coarser of both parts' flash programs at a time, with its error correction.
@@ -179,16 +180,9 @@ impl<F: NorFlash> FaultLog<F> {
 
     /// The page that counts, and its sequence.
     fn newest(&mut self) -> Option<(usize, u32)> {
-        let [first, second] = [0, 1].map(|page| self.sequence_of(page));
-        match (first, second) {
-            // Sequences wrap; of two pages the later one is one further on.
-            (Some(first), Some(second)) if second.wrapping_sub(first).cast_signed() > 0 => {
-                Some((1, second))
-            }
-            (Some(first), _) => Some((0, first)),
-            (None, Some(second)) => Some((1, second)),
-            (None, None) => None,
-        }
+        let sequences = [0, 1].map(|page| self.sequence_of(page));
+        let page = newest_first(sequences).next()?;
+        Some((page, sequences.into_iter().nth(page)??))
     }
 
     fn sequence_of(&mut self, page: usize) -> Option<u32> {
@@ -211,7 +205,7 @@ impl<F: NorFlash> FaultLog<F> {
 
     fn read(&mut self, page: usize, index: usize) -> Result<Slot, LogError> {
         let mut slot = BLANK;
-        let at = self.address(page, index);
+        let at = self.slot_address(page, index);
         match self.flash.read(at, &mut slot) {
             Ok(()) => Ok(slot),
             Err(_) => Err(LogError::Flash),
@@ -219,7 +213,7 @@ impl<F: NorFlash> FaultLog<F> {
     }
 
     fn program(&mut self, page: usize, index: usize, slot: Slot) -> Result<(), LogError> {
-        let at = self.address(page, index);
+        let at = self.slot_address(page, index);
         let written = self.flash.write(at, &slot);
         if written.is_ok() && self.read(page, index) == Ok(slot) {
             Ok(())
@@ -231,35 +225,24 @@ impl<F: NorFlash> FaultLog<F> {
     /// Erases as much of a page as its slots take.
     fn erase(&mut self, page: usize) -> Result<(), LogError> {
         let bytes = self.slots().saturating_mul(SLOT_BYTES);
-        let start = page.saturating_mul(self.page_bytes());
+        let start = page.saturating_mul(half_bytes(&self.flash));
         let mut done = 0_usize;
         while done < bytes {
             let from = start.saturating_add(done);
             let to = from.saturating_add(F::ERASE_SIZE);
-            let erased = self.flash.erase(offset(from), offset(to));
+            let erased = self.flash.erase(address(from), address(to));
             erased.map_err(|_| LogError::Flash)?;
             done = done.saturating_add(F::ERASE_SIZE);
         }
         Ok(())
     }
 
-    /// Half of the flash, in whole pieces that are erased together.
-    fn page_bytes(&self) -> usize {
-        let half = self.flash.capacity() / 2;
-        half.saturating_sub(half % F::ERASE_SIZE)
-    }
-
     fn slots(&self) -> usize {
-        MOST_SLOTS.min(self.page_bytes() / SLOT_BYTES)
+        MOST_SLOTS.min(half_bytes(&self.flash) / SLOT_BYTES)
     }
 
-    fn address(&self, page: usize, index: usize) -> u32 {
-        let start = page.saturating_mul(self.page_bytes());
-        offset(start.saturating_add(index.saturating_mul(SLOT_BYTES)))
+    fn slot_address(&self, page: usize, index: usize) -> u32 {
+        let start = page.saturating_mul(half_bytes(&self.flash));
+        address(start.saturating_add(index.saturating_mul(SLOT_BYTES)))
     }
-}
-
-/// Flash is addressed with 32 bits.
-fn offset(at: usize) -> u32 {
-    u32::try_from(at).unwrap_or(u32::MAX)
 }

@@ -1,5 +1,7 @@
 //! How a copy of the calibration lies in flash.
 
+use embedded_storage::nor_flash::NorFlash;
+
 use super::record::Block;
 
 /// Bytes that are read or programmed at a time: a multiple of what any flash takes at once.
@@ -33,6 +35,30 @@ impl Copy {
             Self::Blank | Self::Damaged => None,
         }
     }
+}
+
+/// Half of a flash, in whole pieces that are erased together.
+pub(super) fn half_bytes<F: NorFlash>(flash: &F) -> usize {
+    let half = flash.capacity() / 2;
+    half.saturating_sub(half % F::ERASE_SIZE)
+}
+
+/// Those of two places that have a sequence, the newer one first.
+pub(super) fn newest_first(sequences: [Option<u32>; 2]) -> impl Iterator<Item = usize> {
+    let order = match sequences {
+        [Some(first), Some(second)] => {
+            // Sequences wrap; of two that were stored one after the other, the later one is one further on.
+            if first.wrapping_sub(second).cast_signed() >= 0 {
+                [Some(0), Some(1)]
+            } else {
+                [Some(1), Some(0)]
+            }
+        }
+        [Some(_), None] => [Some(0), None],
+        [None, Some(_)] => [Some(1), None],
+        [None, None] => [None, None],
+    };
+    order.into_iter().flatten()
 }
 
 /// Flash is addressed with 32 bits.

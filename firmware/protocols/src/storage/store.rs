@@ -14,7 +14,9 @@ use hitch_quantities::calibration::calibration_words::CALIBRATION_WORDS;
 use hitch_quantities::crc32::Crc32;
 
 use super::copy_state::{BlockState, CopyState};
-use super::layout::{CHUNK, CHUNK_WORDS, COPY_BYTES, Copy, SAFETY_CHUNKS, address};
+use super::layout::{
+    CHUNK, CHUNK_WORDS, COPY_BYTES, Copy, SAFETY_CHUNKS, address, half_bytes, newest_first,
+};
 use super::reader::Reader;
 use super::record;
 use super::record::{Block, Carried};
@@ -218,7 +220,7 @@ impl<F: NorFlash> CalibrationStore<F> {
         if self.writing.is_some() {
             return Err(StoreError::Busy);
         }
-        if self.copy_bytes() < COPY_BYTES {
+        if half_bytes(&self.flash) < COPY_BYTES {
             return Err(StoreError::TooSmall);
         }
         if self.in_use.is_none() {
@@ -377,38 +379,14 @@ impl<F: NorFlash> CalibrationStore<F> {
         }))
     }
 
-    /// Size of a copy: half of the flash, in whole pages.
-    fn copy_bytes(&self) -> usize {
-        let half = self.flash.capacity() / 2;
-        half.saturating_sub(half % F::ERASE_SIZE)
-    }
-
     fn copy_start(&self, copy: usize) -> usize {
-        copy.saturating_mul(self.copy_bytes())
+        copy.saturating_mul(half_bytes(&self.flash))
     }
 
     fn copy_range(&self, copy: usize) -> (usize, usize) {
         let start = self.copy_start(copy);
-        (start, start.saturating_add(self.copy_bytes()))
+        (start, start.saturating_add(half_bytes(&self.flash)))
     }
-}
-
-/// Those that have a sequence, the newer one first.
-fn newest_first(sequences: [Option<u32>; 2]) -> impl Iterator<Item = usize> {
-    let order = match sequences {
-        [Some(first), Some(second)] => {
-            // Sequences wrap; of two that were stored one after the other, the later one is one further on.
-            if first.wrapping_sub(second).cast_signed() >= 0 {
-                [Some(0), Some(1)]
-            } else {
-                [Some(1), Some(0)]
-            }
-        }
-        [Some(_), None] => [Some(0), None],
-        [None, Some(_)] => [Some(1), None],
-        [None, None] => [None, None],
-    };
-    order.into_iter().flatten()
 }
 
 fn checksum(words: impl Iterator<Item = u32>) -> u32 {

@@ -4,7 +4,7 @@ use hitch_quantities::crc32::Crc32;
 
 use super::command::identifier;
 use super::error::Refusal;
-use super::memory::Memory;
+use super::map::EcuMemory;
 use super::packet::{Packet, packet};
 
 /// Bytes of a piece.
@@ -33,7 +33,7 @@ impl Checksum {
     }
 
     /// Processes the next piece; returns the answer after the last one.
-    pub fn advance(&mut self, memory: &impl Memory) -> Option<Packet> {
+    pub fn advance(&mut self, memory: &EcuMemory<'_>) -> Option<Packet> {
         let mut bytes = [0; PIECE];
         let wanted = usize::try_from(self.left).unwrap_or(PIECE).min(PIECE);
         let piece = bytes.get_mut(..wanted).unwrap_or(&mut []);

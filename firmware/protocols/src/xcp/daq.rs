@@ -14,7 +14,7 @@ use heapless::{Deque, Vec};
 
 use super::error::Refusal;
 use super::event::Event;
-use super::memory::Memory;
+use super::map::EcuMemory;
 use super::packet::{MOST_BYTES, Packet, packet};
 
 /// Maximum number of lists.
@@ -211,7 +211,7 @@ impl Daq {
     }
 
     /// Writes the entry at the pointer.
-    pub fn write(&mut self, address: u32, size: u8, memory: &impl Memory) -> Result<(), Refusal> {
+    pub fn write(&mut self, address: u32, size: u8, memory: &EcuMemory<'_>) -> Result<(), Refusal> {
         let place = self.pointed_at()?;
         let (list, ..) = self.pointer.ok_or(Refusal::Sequence)?;
         if self.list(list.into())?.activity == Activity::Running {
@@ -305,7 +305,7 @@ impl Daq {
     }
 
     /// Samples the running lists of an event.
-    pub fn sample(&mut self, event: Event, memory: &impl Memory, now_us: u32) {
+    pub fn sample(&mut self, event: Event, memory: &EcuMemory<'_>, now_us: u32) {
         let (tables, entries) = (&self.tables, &self.entries);
         for list in &mut self.lists {
             if list.activity != Activity::Running || list.event != event as u8 {
@@ -397,7 +397,7 @@ impl Daq {
 }
 
 /// Appends the value of an entry to a packet. An unreadable value is zero, so that the positions of the others stay.
-fn append(sample: &mut Packet, entry: &Entry, memory: &impl Memory) {
+fn append(sample: &mut Packet, entry: &Entry, memory: &EcuMemory<'_>) {
     let mut value = [0; ROOM];
     if let Some(value) = value.get_mut(..usize::from(entry.size)) {
         let _ = memory.read(entry.address, value);

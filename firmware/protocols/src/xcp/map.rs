@@ -14,7 +14,7 @@ use super::error::Refusal;
 use super::event::Event;
 use super::measurements;
 use super::measurements::Measurements;
-use super::memory::{Memory, MemoryRange, Page, Text};
+use super::memory::{MemoryRange, Page, Text};
 use super::pages::{CalibrationPages, Right};
 use crate::key::Nonce;
 
@@ -109,23 +109,23 @@ impl EcuMemory<'_> {
             _ => d,
         })
     }
-}
 
-/// Offset of an address in the calibration, if it is inside.
-fn calibration_offset(address: u32) -> Option<usize> {
-    let offset = usize::try_from(address.checked_sub(CALIBRATION_BASE)?).ok()?;
-    (offset < CALIBRATION_BYTES).then_some(offset)
-}
-
-impl Memory for EcuMemory<'_> {
-    fn read(&self, address: u32, target: &mut [u8]) -> Result<(), Refusal> {
+    /// Reads `target` completely or fails, if a part of it is not readable.
+    pub(super) fn read(&self, address: u32, target: &mut [u8]) -> Result<(), Refusal> {
         for (address, byte) in (address..=u32::MAX).zip(target) {
             *byte = self.byte(address)?;
         }
         Ok(())
     }
 
-    fn write(&mut self, address: u32, bytes: &[u8], unlocked: bool) -> Result<(), Refusal> {
+    /// Writes `bytes` completely or fails, if a part of it is not writable, or a value is out of range; `unlocked`: safety
+    /// values may be loosened.
+    pub(super) fn write(
+        &mut self,
+        address: u32,
+        bytes: &[u8],
+        unlocked: bool,
+    ) -> Result<(), Refusal> {
         let offset = calibration_offset(address).ok_or(Refusal::AccessDenied)?;
         let right = match self.access {
             Access::Locked => return Err(Refusal::AccessLocked),
@@ -136,62 +136,48 @@ impl Memory for EcuMemory<'_> {
         self.pages.write(offset, bytes, right)
     }
 
-    fn segment(&self) -> (u32, u32) {
-        (CALIBRATION_BASE, CALIBRATION_BYTES as u32)
-    }
-
-    fn text(&self, text: Text) -> MemoryRange {
-        let (offset, length) = match text {
-            Text::Identity => (0, IDENTITY_BYTES as u8),
-            Text::DescriptionFile => (0, FILE_NAME_BYTES),
-            Text::Event(Event::Every1Ms) => (IDENTITY_BYTES as u8, 4),
-            Text::Event(Event::Every10Ms) => (IDENTITY_BYTES as u8 + 4, 5),
-            Text::Event(Event::Every100Ms) => (IDENTITY_BYTES as u8 + 9, 6),
-        };
-        MemoryRange {
-            address: IDENTITY_BASE | u32::from(offset),
-            length,
-        }
-    }
-
-    fn may_calibrate(&self) -> bool {
+    /// Whether writing is permitted: tuning is enabled on the machine.
+    pub(super) fn may_calibrate(&self) -> bool {
         self.access != Access::Locked
     }
 
-    fn may_store(&self) -> bool {
+    /// Whether the working page may be stored in flash now.
+    pub(super) fn may_store(&self) -> bool {
         self.access == Access::AtRest
     }
 
-    fn requires_key_to_store(&self) -> bool {
-        self.pages.requires_key_to_store()
-    }
-
-    fn nonce(&self) -> Nonce {
-        self.nonce
-    }
-
-    fn tool_page(&self) -> Page {
-        self.pages.tool_page()
-    }
-
-    fn controller_page(&self) -> Page {
-        self.pages.controller_page()
-    }
-
-    fn set_tool_page(&mut self, page: Page) -> Result<(), Refusal> {
-        self.pages.set_tool_page(page);
-        Ok(())
-    }
-
-    fn set_controller_page(&mut self, page: Page) -> Result<(), Refusal> {
+    /// Selects the page of the controller, if that is possible now.
+    pub(super) fn set_controller_page(&mut self, page: Page) -> Result<(), Refusal> {
         self.at_rest()?;
         self.pages.set_controller_page(page);
         Ok(())
     }
 
-    fn restore_working_page(&mut self) -> Result<(), Refusal> {
+    /// Copies the reference page over the working page, if that is possible now.
+    pub(super) fn restore_working_page(&mut self) -> Result<(), Refusal> {
         self.at_rest()?;
         self.pages.restore_working_page();
         Ok(())
+    }
+}
+
+/// Offset of an address in the calibration, if it is inside.
+fn calibration_offset(address: u32) -> Option<usize> {
+    let offset = usize::try_from(address.checked_sub(CALIBRATION_BASE)?).ok()?;
+    (offset < CALIBRATION_BYTES).then_some(offset)
+}
+
+/// Address range of a text.
+pub(super) fn text_range(text: Text) -> MemoryRange {
+    let (offset, length) = match text {
+        Text::Identity => (0, IDENTITY_BYTES as u8),
+        Text::DescriptionFile => (0, FILE_NAME_BYTES),
+        Text::Event(Event::Every1Ms) => (IDENTITY_BYTES as u8, 4),
+        Text::Event(Event::Every10Ms) => (IDENTITY_BYTES as u8 + 4, 5),
+        Text::Event(Event::Every100Ms) => (IDENTITY_BYTES as u8 + 9, 6),
+    };
+    MemoryRange {
+        address: IDENTITY_BASE | u32::from(offset),
+        length,
     }
 }

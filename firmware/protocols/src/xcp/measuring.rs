@@ -4,8 +4,9 @@ use super::command::{code, identifier};
 use super::daq::Daq;
 use super::error::Refusal;
 use super::event::Event;
-use super::memory::{Memory, MemoryRange, Text};
-use super::packet::{Answer, Packet, done, packet, response};
+use super::map::{EcuMemory, text_range};
+use super::memory::{MemoryRange, Text};
+use super::packet::{Answer, Packet, arguments, done, packet, response};
 
 /// Lists are dynamic, with prescalers and time stamps; an overload is reported as an event.
 const PROPERTIES: u8 = 0x93;
@@ -24,7 +25,7 @@ pub(super) fn dispatch(
     daq: &mut Daq,
     command: u8,
     rest: &[u8],
-    memory: &impl Memory,
+    memory: &EcuMemory<'_>,
     now_us: u32,
 ) -> Answer {
     match command {
@@ -50,7 +51,7 @@ pub(super) fn dispatch(
     }
 }
 
-fn with_arguments(daq: &mut Daq, command: u8, rest: &[u8], memory: &impl Memory) -> Answer {
+fn with_arguments(daq: &mut Daq, command: u8, rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
     match (command, rest) {
         (code::ALLOC_DAQ, &[_, a, b, ..]) => daq.allocate_lists(u16::from_le_bytes([a, b]))?,
         (code::ALLOC_ODT, &[_, a, b, count, ..]) => {
@@ -90,15 +91,10 @@ fn with_arguments(daq: &mut Daq, command: u8, rest: &[u8], memory: &impl Memory)
 }
 
 /// GET_DAQ_EVENT_INFO: properties of an event, and address of its name.
-pub(super) fn event_info(
-    rest: &[u8],
-    memory: &impl Memory,
-) -> Result<(MemoryRange, Packet), Refusal> {
-    let [_, a, b, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
+pub(super) fn event_info(rest: &[u8]) -> Result<(MemoryRange, Packet), Refusal> {
+    let [_, a, b] = arguments(rest)?;
     let event = Event::from_number(u16::from_le_bytes([a, b])).ok_or(Refusal::OutOfRange)?;
-    let name = memory.text(Text::Event(event));
+    let name = text_range(Text::Event(event));
     let info = [
         EVENT_FOR_MEASURING,
         ANY_NUMBER,

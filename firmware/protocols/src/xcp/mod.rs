@@ -1,6 +1,6 @@
 //! Measurement and calibration over CAN: an XCP slave (ASAM MCD-1 XCP 1.x), compatible with free and commercial tools.
 //!
-//! [`Slave`] answers commands and samples measurements by address. [`Memory`] maps the addresses; that of the ECU is a
+//! [`Slave`] answers commands and samples measurements by address. [`EcuMemory`] maps the addresses, a
 //! map without pointers ([`map`]): a slot of four bytes for each word of the calibration ([`pages`]), and one for each
 //! measurement ([`measurements`]). A description file (A2L) therefore depends on the tables of this crate and not on
 //! the linker, and no other memory is accessible.
@@ -25,6 +25,6 @@ pub use error::Refusal;
 pub use event::Event;
 pub use map::{Access, EcuMemory};
 pub use measurements::Measurements;
-pub use memory::{Memory, MemoryRange, Page, Text};
+pub use memory::Page;
 pub use pages::{CalibrationPages, Right};
 pub use slave::{Slave, TOOL_ADDRESS};

@@ -19,6 +19,11 @@ pub(super) fn packet(identifier: u8, rest: &[u8]) -> Packet {
         .collect()
 }
 
+/// The first bytes after the code of a command.
+pub(super) fn arguments<const N: usize>(rest: &[u8]) -> Result<[u8; N], Refusal> {
+    rest.first_chunk().copied().ok_or(Refusal::Syntax)
+}
+
 /// Answer to a command; `None` if it is sent later.
 pub(super) type Answer = Result<Option<Packet>, Refusal>;
 

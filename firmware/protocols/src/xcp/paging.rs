@@ -1,8 +1,11 @@
 //! Commands that select and copy pages of the calibration: one segment with a working and a reference page.
 
+use hitch_quantities::calibration::CALIBRATION_BYTES;
+
 use super::error::Refusal;
-use super::memory::{Memory, Page};
-use super::packet::{Answer, done, response};
+use super::map::{CALIBRATION_BASE, EcuMemory};
+use super::memory::Page;
+use super::packet::{Answer, arguments, done, response};
 
 const SEGMENTS: u8 = 1;
 const PAGES: u8 = 2;
@@ -13,12 +16,10 @@ const TOOL: u8 = 0x02;
 const ALL: u8 = 0x80;
 
 /// SET_CAL_PAGE: mode, segment, page.
-pub(super) fn set_page(rest: &[u8], memory: &mut impl Memory) -> Answer {
-    let [mode, segment, number, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if segment >= SEGMENTS && mode & ALL == 0 {
-        return Err(Refusal::SegmentNotValid);
+pub(super) fn set_page(rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
+    let [mode, segment, number] = arguments(rest)?;
+    if mode & ALL == 0 {
+        check_segment(segment)?;
     }
     let page = Page::from_number(number).ok_or(Refusal::PageNotValid)?;
     if mode & (CONTROLLER | TOOL) == 0 {
@@ -29,22 +30,18 @@ pub(super) fn set_page(rest: &[u8], memory: &mut impl Memory) -> Answer {
         memory.set_controller_page(page)?;
     }
     if mode & TOOL != 0 {
-        memory.set_tool_page(page)?;
+        memory.pages.set_tool_page(page);
     }
     done()
 }
 
 /// GET_CAL_PAGE: target, segment.
-pub(super) fn page(rest: &[u8], memory: &impl Memory) -> Answer {
-    let [access, segment, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if segment >= SEGMENTS {
-        return Err(Refusal::SegmentNotValid);
-    }
+pub(super) fn page(rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
+    let [access, segment] = arguments(rest)?;
+    check_segment(segment)?;
     let page = match access {
-        CONTROLLER => memory.controller_page(),
-        TOOL => memory.tool_page(),
+        CONTROLLER => memory.pages.controller_page(),
+        TOOL => memory.pages.tool_page(),
         _ => return Err(Refusal::ModeNotValid),
     };
     response(&[0, 0, page as u8])
@@ -56,17 +53,12 @@ pub(super) fn info() -> Answer {
 }
 
 /// GET_SEGMENT_INFO: address of the segment, and number of pages.
-pub(super) fn segment_info(rest: &[u8], memory: &impl Memory) -> Answer {
-    let [mode, segment, info, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if segment >= SEGMENTS {
-        return Err(Refusal::SegmentNotValid);
-    }
-    let (address, length) = memory.segment();
+pub(super) fn segment_info(rest: &[u8]) -> Answer {
+    let [mode, segment, info] = arguments(rest)?;
+    check_segment(segment)?;
     let basic = match (mode, info) {
-        (0, 0) => address,
-        (0, 1) => length,
+        (0, 0) => CALIBRATION_BASE,
+        (0, 1) => CALIBRATION_BYTES as u32,
         // Nothing is extended, mapped, compressed or encrypted.
         (1, _) => return response(&[PAGES, 0, 0, 0, 0]),
         _ => return Err(Refusal::OutOfRange),
@@ -82,12 +74,8 @@ pub(super) fn page_info(rest: &[u8]) -> Answer {
     const READABLE: u8 = 0x0F;
     /// By the tool, independent of the controller.
     const WRITABLE: u8 = 0x30;
-    let [_, segment, page, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if segment >= SEGMENTS {
-        return Err(Refusal::SegmentNotValid);
-    }
+    let [_, segment, page] = arguments(rest)?;
+    check_segment(segment)?;
     match Page::from_number(page).ok_or(Refusal::PageNotValid)? {
         Page::Working => response(&[READABLE | WRITABLE, 0]),
         Page::Reference => response(&[READABLE, 0]),
@@ -95,13 +83,10 @@ pub(super) fn page_info(rest: &[u8]) -> Answer {
 }
 
 /// COPY_CAL_PAGE: only from the reference page to the working page.
-pub(super) fn copy(rest: &[u8], memory: &mut impl Memory) -> Answer {
-    let [from_segment, from, to_segment, to, ..] = *rest else {
-        return Err(Refusal::Syntax);
-    };
-    if from_segment >= SEGMENTS || to_segment >= SEGMENTS {
-        return Err(Refusal::SegmentNotValid);
-    }
+pub(super) fn copy(rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
+    let [from_segment, from, to_segment, to] = arguments(rest)?;
+    check_segment(from_segment)?;
+    check_segment(to_segment)?;
     if from >= PAGES || to >= PAGES {
         return Err(Refusal::PageNotValid);
     }
@@ -111,4 +96,12 @@ pub(super) fn copy(rest: &[u8], memory: &mut impl Memory) -> Answer {
         _ => return Err(Refusal::ModeNotValid),
     }
     done()
+}
+
+const fn check_segment(number: u8) -> Result<(), Refusal> {
+    if number < SEGMENTS {
+        Ok(())
+    } else {
+        Err(Refusal::SegmentNotValid)
+    }
 }

@@ -7,8 +7,9 @@ use super::command::{code, event, identifier};
 use super::daq::Daq;
 use super::error::Refusal;
 use super::event::Event;
-use super::memory::{Memory, MemoryRange, Text};
-use super::packet::{Answer, MOST_BYTES, Packet, done, packet, response};
+use super::map::{EcuMemory, text_range};
+use super::memory::{MemoryRange, Text};
+use super::packet::{Answer, MOST_BYTES, Packet, arguments, done, packet, response};
 use super::unlocking::{CALIBRATION, Unlocking};
 use super::{checksum, measuring, paging};
 use crate::can::Frame;
@@ -90,7 +91,7 @@ impl Slave {
     }
 
     /// Processes a frame from the bus; other frames than commands to this node are ignored.
-    pub fn receive(&mut self, frame: &Frame, memory: &mut impl Memory, now_us: u32) {
+    pub fn receive(&mut self, frame: &Frame, memory: &mut EcuMemory<'_>, now_us: u32) {
         let Some(id) = frame.extended_data_id().map(Id::unpack) else {
             return;
         };
@@ -113,7 +114,7 @@ impl Slave {
 
     /// Samples the measurements of this event. Called once in a step for each due event, including the 1 ms event,
     /// which also continues long operations.
-    pub fn event(&mut self, event: Event, memory: &impl Memory, now_us: u32) {
+    pub fn event(&mut self, event: Event, memory: &EcuMemory<'_>, now_us: u32) {
         if event == Event::Every1Ms {
             self.carry_on(memory);
         }
@@ -125,12 +126,7 @@ impl Slave {
 
     /// The next frame: answers first, then samples. Called while there is room for one.
     pub fn poll(&mut self) -> Option<Frame> {
-        let id = Id {
-            priority: PRIORITY,
-            pgn: Pgn::PROPRIETARY_A,
-            destination: TOOL_ADDRESS,
-            source: self.address?,
-        };
+        let id = Id::broadcast(Pgn::PROPRIETARY_A, PRIORITY, self.address?).to(TOOL_ADDRESS);
         let packet = self.queue.pop_front();
         let packet = packet.or_else(|| self.daq.next_packet())?;
         Frame::data_frame(id.pack().into(), &packet)
@@ -167,7 +163,7 @@ impl Slave {
         let _ = self.queue.push_back(packet);
     }
 
-    fn carry_on(&mut self, memory: &impl Memory) {
+    fn carry_on(&mut self, memory: &EcuMemory<'_>) {
         self.unlocking.step(memory);
         let answer = self
             .checksum
@@ -183,7 +179,7 @@ impl Slave {
         &mut self,
         command: u8,
         rest: &[u8],
-        memory: &mut impl Memory,
+        memory: &mut EcuMemory<'_>,
         now_us: u32,
     ) -> Answer {
         match command {
@@ -195,7 +191,7 @@ impl Slave {
             code::GET_STATUS => self.status(memory),
             code::SYNCH => Err(Refusal::Synchronised),
             code::GET_COMM_MODE_INFO => response(&[0, 0, 0, 0, 0, 0, DRIVER_VERSION]),
-            code::GET_ID => self.identity(rest, memory),
+            code::GET_ID => self.identity(rest),
             code::SET_REQUEST => self.request_store(rest, memory),
             code::GET_SEED => self.unlocking.seed(rest, memory, now_us),
             code::UNLOCK => self.unlock(rest),
@@ -207,11 +203,11 @@ impl Slave {
             code::SET_CAL_PAGE => paging::set_page(rest, memory),
             code::GET_CAL_PAGE => paging::page(rest, memory),
             code::GET_PAG_PROCESSOR_INFO => paging::info(),
-            code::GET_SEGMENT_INFO => paging::segment_info(rest, memory),
+            code::GET_SEGMENT_INFO => paging::segment_info(rest),
             code::GET_PAGE_INFO => paging::page_info(rest),
             code::COPY_CAL_PAGE => paging::copy(rest, memory),
             code::GET_DAQ_EVENT_INFO => {
-                let (name, answer) = measuring::event_info(rest, memory)?;
+                let (name, answer) = measuring::event_info(rest)?;
                 self.transfer_address = name.address;
                 Ok(Some(answer))
             }
@@ -245,7 +241,7 @@ impl Slave {
         self.queue.clear();
     }
 
-    fn status(&self, memory: &impl Memory) -> Answer {
+    fn status(&self, memory: &EcuMemory<'_>) -> Answer {
         let mut session = 0;
         if self.store != Store::Idle {
             session |= STORE_REQUESTED;
@@ -271,24 +267,24 @@ impl Slave {
     }
 
     /// Sets the transfer address to a text.
-    fn identity(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
-        let [kind, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+    fn identity(&mut self, rest: &[u8]) -> Answer {
+        let [kind] = arguments(rest)?;
         let text = match kind {
-            0 => memory.text(Text::Identity),
-            1 => memory.text(Text::DescriptionFile),
+            0 => text_range(Text::Identity),
+            1 => text_range(Text::DescriptionFile),
             _ => MemoryRange::default(),
         };
         self.transfer_address = text.address;
         response(&[0, 0, 0, text.length, 0, 0, 0])
     }
 
-    fn request_store(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
+    fn request_store(&mut self, rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
         const STORE_CALIBRATION: u8 = 0x01;
         match rest {
             [STORE_CALIBRATION, ..] if !memory.may_calibrate() => Err(Refusal::AccessLocked),
-            [STORE_CALIBRATION, ..] if memory.requires_key_to_store() && !self.is_unlocked() => {
+            [STORE_CALIBRATION, ..]
+                if memory.pages.requires_key_to_store() && !self.is_unlocked() =>
+            {
                 Err(Refusal::AccessLocked)
             }
             [STORE_CALIBRATION, ..] if !memory.may_store() => Err(Refusal::AccessDenied),
@@ -304,25 +300,19 @@ impl Slave {
     }
 
     fn set_transfer_address(&mut self, rest: &[u8]) -> Answer {
-        let [_, _, extension, a, b, c, d, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+        let [_, _, extension, a, b, c, d] = arguments(rest)?;
         self.transfer_address = address(extension, [a, b, c, d])?;
         done()
     }
 
-    fn short_upload(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
-        let [_, _, extension, a, b, c, d, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+    fn short_upload(&mut self, rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
+        let [_, _, extension, a, b, c, d] = arguments(rest)?;
         self.transfer_address = address(extension, [a, b, c, d])?;
         self.upload(rest, memory)
     }
 
-    fn upload(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
-        let [count, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+    fn upload(&mut self, rest: &[u8], memory: &EcuMemory<'_>) -> Answer {
+        let [count] = arguments(rest)?;
         let mut bytes = [0; MOST_BYTES - 1];
         let target = bytes.get_mut(..usize::from(count));
         let target = target.ok_or(Refusal::OutOfRange)?;
@@ -332,9 +322,7 @@ impl Slave {
     }
 
     fn build_checksum(&mut self, rest: &[u8]) -> Answer {
-        let [_, _, _, a, b, c, d, ..] = *rest else {
-            return Err(Refusal::Syntax);
-        };
+        let [_, _, _, a, b, c, d] = arguments(rest)?;
         let length = u32::from_le_bytes([a, b, c, d]);
         if length > checksum::LONGEST {
             return Ok(Some(checksum::too_long()));
@@ -345,7 +333,7 @@ impl Slave {
         Ok(None)
     }
 
-    fn download(&mut self, command: u8, rest: &[u8], memory: &mut impl Memory) -> Answer {
+    fn download(&mut self, command: u8, rest: &[u8], memory: &mut EcuMemory<'_>) -> Answer {
         let data = if command == code::DOWNLOAD_MAX {
             rest.get(..MOST_BYTES - 1)
         } else {

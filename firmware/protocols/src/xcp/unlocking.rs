@@ -1,7 +1,7 @@
 //! GET_SEED and UNLOCK: the session's right to loosen safety values.
 
 use super::error::Refusal;
-use super::memory::Memory;
+use super::map::EcuMemory;
 use super::packet::{Answer, MOST_BYTES, response};
 use crate::key::{RESPONSE_BYTES, SEED_BYTES, Secret, Seed};
 
@@ -92,7 +92,7 @@ impl Unlocking {
     }
 
     /// A millisecond.
-    pub(super) fn step(&mut self, memory: &impl Memory) {
+    pub(super) fn step(&mut self, memory: &EcuMemory<'_>) {
         self.wait_ms = self.wait_ms.saturating_sub(1);
         if !memory.may_calibrate() {
             self.close();
@@ -100,7 +100,7 @@ impl Unlocking {
     }
 
     /// GET_SEED: mode, resource. Each first request makes a new challenge. A seed of no bytes means unlocked.
-    pub(super) fn seed(&mut self, rest: &[u8], memory: &impl Memory, now_us: u32) -> Answer {
+    pub(super) fn seed(&mut self, rest: &[u8], memory: &EcuMemory<'_>, now_us: u32) -> Answer {
         match *rest {
             [0, CALIBRATION, ..] => {
                 if self.is_open {
@@ -111,7 +111,7 @@ impl Unlocking {
                 if !is_ready || self.secret.is_none() {
                     return Err(Refusal::AccessLocked);
                 }
-                let challenge = Challenge::new(memory.nonce().seed(now_us));
+                let challenge = Challenge::new(memory.nonce.seed(now_us));
                 self.challenge.insert(challenge).next_piece()
             }
             [0, _, ..] => response(&[0]),

@@ -9,6 +9,8 @@ use super::field_parameters::{
     DepthParameters, DraftParameters, RideParameters, SlipParameters, WorkParameters,
 };
 use super::linkage::LinkageTable;
+use super::nominal::{LIFT, LINKAGE, LOWER};
+use super::parameter::{Group, ParameterGroup};
 use super::valve_table::ValveTable;
 use crate::units::{MicroLitrePerSecond, MilliAmp};
 
@@ -20,58 +22,106 @@ pub(super) const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_00
 
 pub(super) const CURRENT_LIMIT: MilliAmp = MilliAmp(5_000);
 
-/// The raw block. All of it is 32-bit words, so its memory image has no padding.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[repr(C)]
-pub struct Calibration {
-    /// Layout; see [`CALIBRATION_VERSION`].
-    pub version: u32,
-    /// Lift valve at the compensated drop.
-    pub lift: ValveTable,
-    /// Lowering valve at [`HydraulicParameters::reference_drop`].
-    pub lower: ValveTable,
-    /// Rocker angle to piston travel.
-    pub linkage: LinkageTable,
+/// Declares the block by its groups of scalars, in their order behind the tables.
+macro_rules! calibration {
+    ($($(#[$doc:meta])+ $group:ident: $Group:ident,)+) => {
+        /// The raw block. All of it is 32-bit words, so its memory image has no padding.
+        #[derive(Clone, Debug, PartialEq, Eq)]
+        #[repr(C)]
+        pub struct Calibration {
+            /// Layout; see [`CALIBRATION_VERSION`].
+            pub version: u32,
+            /// Lift valve at the compensated drop.
+            pub lift: ValveTable,
+            /// Lowering valve at [`HydraulicParameters::reference_drop`].
+            pub lower: ValveTable,
+            /// Rocker angle to piston travel.
+            pub linkage: LinkageTable,
+            $($(#[$doc])+ pub $group: $Group,)+
+            /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
+            pub checksum: u32,
+        }
+
+        /// The groups in the order of the block.
+        pub const GROUPS: [Group; [$(<$Group as ParameterGroup>::NAME),+].len()] = [$(Group::of::<$Group>()),+];
+
+        impl Calibration {
+            /// The calibration of an untaught machine without a checksum, to be filled with something else. Not inlined: the
+            /// block would take its place on the stack of every caller.
+            #[inline(never)]
+            pub(crate) fn unsealed_nominal() -> Self {
+                Self {
+                    version: CALIBRATION_VERSION,
+                    lift: LIFT,
+                    lower: LOWER,
+                    linkage: LINKAGE,
+                    $($group: $Group::NOMINAL,)+
+                    checksum: 0,
+                }
+            }
+
+            /// Scalar `index`, counted through all groups.
+            pub(super) fn scalar(&self, index: usize) -> Option<i32> {
+                // The first group that has it ends the search.
+                let at = &mut { index };
+                None$(.or_else(|| scalar_of(&self.$group, at)))+
+            }
+
+            /// Visits every scalar in the order of the block.
+            #[inline]
+            pub(super) fn visit_scalars(&mut self, visit: &mut dyn FnMut(&mut i32)) {
+                $(self.$group.visit(visit);)+
+            }
+        }
+    };
+}
+
+/// Scalar `index` of a group; otherwise the index counts from its end on.
+fn scalar_of<G: ParameterGroup>(group: &G, index: &mut usize) -> Option<i32> {
+    let found = group.get(*index);
+    *index = index.wrapping_sub(G::INFO.len());
+    found
+}
+
+calibration! {
     /// Hydraulic circuit.
-    pub hydraulics: HydraulicParameters,
+    hydraulics: HydraulicParameters,
     /// Plausibility of sensors.
-    pub sensors: SensorParameters,
+    sensors: SensorParameters,
     /// Start-up lock.
-    pub lock: LockParameters,
+    lock: LockParameters,
     /// What the operator sets besides the lever.
-    pub operator: OperatorParameters,
+    operator: OperatorParameters,
     /// Motion estimator.
-    pub motion: MotionParameters,
+    motion: MotionParameters,
     /// Position control.
-    pub position: PositionParameters,
+    position: PositionParameters,
     /// Rate control.
-    pub rate: RateParameters,
+    rate: RateParameters,
     /// Check-valve logic.
-    pub hold: HoldParameters,
+    hold: HoldParameters,
     /// Compensator logic.
-    pub saturation: SaturationParameters,
+    saturation: SaturationParameters,
     /// Teaching.
-    pub teach: TeachParameters,
+    teach: TeachParameters,
     /// Regulation of the coils' currents.
-    pub current: CurrentParameters,
+    current: CurrentParameters,
     /// What is sent on the bus, and from whom it is received.
-    pub bus: BusParameters,
+    bus: BusParameters,
     /// Remote control by an implement.
-    pub remote: RemoteParameters,
+    remote: RemoteParameters,
     /// Draft pins and draft control.
-    pub draft: DraftParameters,
+    draft: DraftParameters,
     /// External depth sensor and depth control.
-    pub depth: DepthParameters,
+    depth: DepthParameters,
     /// Slip guard.
-    pub slip: SlipParameters,
+    slip: SlipParameters,
     /// Ride damping.
-    pub ride: RideParameters,
+    ride: RideParameters,
     /// When the implement is in work.
-    pub work: WorkParameters,
+    work: WorkParameters,
     /// Safety envelope.
-    pub safety: SafetyParameters,
-    /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
-    pub checksum: u32,
+    safety: SafetyParameters,
 }
 
 /// Size of the block in bytes.

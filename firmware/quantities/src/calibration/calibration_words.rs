@@ -1,17 +1,11 @@
 //! The calibration block as a list of words, with what each may hold: the view that tools and storage have of it.
 
+pub use super::block::GROUPS;
 use super::block::{CALIBRATION_BYTES, CURRENT_LIMIT, Calibration, FLOW_LIMIT};
-use super::class::{Class, Tightening, class_of};
-use super::design_parameters::{
-    BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
-    MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
-    SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
-};
-use super::field_parameters::{
-    DepthParameters, DraftParameters, RideParameters, SlipParameters, WorkParameters,
-};
+use super::class::{Class, Tightening};
 use super::linkage::LINKAGE_POINTS;
-use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
+pub use super::parameter::Group;
+use super::parameter::{OutOfRange, ParameterInfo};
 use super::valve_table::{VALVE_POINTS, ValveTable};
 use crate::fnv;
 
@@ -34,49 +28,10 @@ pub const LINKAGE_WORD: usize = LOWER_WORD + VALVE_WORDS;
 /// The first word of the scalars.
 pub const SCALARS_WORD: usize = LINKAGE_WORD + LINKAGE_WORDS;
 
-/// A group of scalars, as it follows the tables.
-#[derive(Clone, Copy, Debug)]
-pub struct Group {
-    /// Name of the group.
-    pub name: &'static str,
-    /// Its scalars, a word each.
-    pub parameters: &'static [ParameterInfo],
-}
-
-const fn group<G: ParameterGroup>() -> Group {
-    Group {
-        name: G::NAME,
-        parameters: G::INFO,
-    }
-}
-
 /// A hash of the name of a scalar with that of its group.
 const fn full_name(group: &str, name: &str) -> u32 {
     fnv::text(fnv::text(fnv::START, group), name)
 }
-
-/// The groups in the order of the block.
-pub const GROUPS: [Group; 19] = [
-    group::<HydraulicParameters>(),
-    group::<SensorParameters>(),
-    group::<LockParameters>(),
-    group::<OperatorParameters>(),
-    group::<MotionParameters>(),
-    group::<PositionParameters>(),
-    group::<RateParameters>(),
-    group::<HoldParameters>(),
-    group::<SaturationParameters>(),
-    group::<TeachParameters>(),
-    group::<CurrentParameters>(),
-    group::<BusParameters>(),
-    group::<RemoteParameters>(),
-    group::<DraftParameters>(),
-    group::<DepthParameters>(),
-    group::<SlipParameters>(),
-    group::<RideParameters>(),
-    group::<WorkParameters>(),
-    group::<SafetyParameters>(),
-];
 
 /// What a word may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -178,6 +133,7 @@ const NAMELESS: ParameterInfo = ParameterInfo {
     min: i32::MIN,
     max: i32::MAX,
     nominal: 0,
+    class: Class::Machine,
     reason: "",
 };
 
@@ -259,8 +215,8 @@ impl Scalar {
     const TIGHTER_DOWN: u32 = 3 << 24;
     const KEY_ONLY: u32 = 4 << 24;
 
-    const fn new(key: u32, class: Class, parameter: &ParameterInfo) -> Self {
-        let class = match class {
+    const fn new(key: u32, parameter: &ParameterInfo) -> Self {
+        let class = match parameter.class {
             Class::Machine => Self::MACHINE,
             Class::Live => Self::LIVE,
             Class::Safety(Tightening::Up) => Self::TIGHTER_UP,
@@ -302,7 +258,7 @@ const SCALAR_COUNT: usize = CALIBRATION_WORDS - SCALARS_WORD - 1;
 static SCALARS: [Scalar; SCALAR_COUNT] = scalars();
 
 const fn scalars() -> [Scalar; SCALAR_COUNT] {
-    let mut all = [Scalar::new(0, Class::Machine, &NAMELESS); SCALAR_COUNT];
+    let mut all = [Scalar::new(0, &NAMELESS); SCALAR_COUNT];
     let (mut next, mut of_group) = (0, 0);
     while of_group < GROUPS.len() {
         let group = GROUPS[of_group];
@@ -315,7 +271,7 @@ const fn scalars() -> [Scalar; SCALAR_COUNT] {
                 parameter.suffix,
                 parameter.counts_per_unit,
             );
-            all[next] = Scalar::new(key, class_of(group.name, &parameter), &parameter);
+            all[next] = Scalar::new(key, &parameter);
             next += 1;
             index += 1;
         }
@@ -379,36 +335,6 @@ impl Calibration {
             CHECKSUM_WORD => Some(self.checksum.cast_signed()),
             _ => self.scalar(index.checked_sub(SCALARS_WORD)?),
         }
-    }
-
-    /// Scalar `index`, counted through all groups.
-    fn scalar(&self, index: usize) -> Option<i32> {
-        fn of<G: ParameterGroup>(group: &G, index: &mut usize) -> Option<i32> {
-            let found = group.get(*index);
-            *index = index.wrapping_sub(G::INFO.len());
-            found
-        }
-        // The first group that has it ends the search.
-        let at = &mut { index };
-        of(&self.hydraulics, at)
-            .or_else(|| of(&self.sensors, at))
-            .or_else(|| of(&self.lock, at))
-            .or_else(|| of(&self.operator, at))
-            .or_else(|| of(&self.motion, at))
-            .or_else(|| of(&self.position, at))
-            .or_else(|| of(&self.rate, at))
-            .or_else(|| of(&self.hold, at))
-            .or_else(|| of(&self.saturation, at))
-            .or_else(|| of(&self.teach, at))
-            .or_else(|| of(&self.current, at))
-            .or_else(|| of(&self.bus, at))
-            .or_else(|| of(&self.remote, at))
-            .or_else(|| of(&self.draft, at))
-            .or_else(|| of(&self.depth, at))
-            .or_else(|| of(&self.slip, at))
-            .or_else(|| of(&self.ride, at))
-            .or_else(|| of(&self.work, at))
-            .or_else(|| of(&self.safety, at))
     }
 
     /// The block of words; nothing of it is checked.

@@ -21,7 +21,7 @@ pub use block::{CALIBRATION_BYTES, CALIBRATION_VERSION, Calibration};
 use block::{CURRENT_LIMIT, FLOW_LIMIT};
 use calibration_words::CALIBRATION_WORDS;
 use linkage::{LINKAGE_POINTS, LinkageTable};
-use parameter::{OutOfRange, ParameterGroup};
+use parameter::OutOfRange;
 use valve_table::{VALVE_POINTS, ValveTable};
 
 /// Why a calibration is refused.
@@ -208,93 +208,29 @@ impl Calibration {
 
     /// Limits that only make sense in one order.
     fn check_order(&self) -> Result<(), CalibrationError> {
-        let (position, sensors, hydraulics) = (&self.position, &self.sensors, &self.hydraulics);
-        let operator = &self.operator;
-        let pairs = [
-            (
-                "position",
-                "lower_limit",
-                position.lower_limit.0,
-                "upper_limit",
-                position.upper_limit.0,
-            ),
-            (
-                "position",
-                "stop_band",
-                position.stop_band.0,
-                "restart_band",
-                position.restart_band.0,
-            ),
-            (
-                "sensors",
-                "angle_min",
-                sensors.angle_min.0,
-                "angle_max",
-                sensors.angle_max.0,
-            ),
-            (
-                "sensors",
-                "lever_min",
-                sensors.lever_min.0,
-                "lever_max",
-                sensors.lever_max.0,
-            ),
-            (
-                "operator",
-                "float_lever",
-                operator.float_lever.0,
-                "float_exit",
-                operator.float_exit.0,
-            ),
-            (
-                "current",
-                "lowest_resistance",
-                self.current.lowest_resistance.0,
-                "highest_resistance",
-                self.current.highest_resistance.0,
-            ),
-            (
-                "safety",
-                "supply_min",
-                self.safety.supply_min.0,
-                "supply_max",
-                self.safety.supply_max.0,
-            ),
-            (
-                "safety",
-                "sensor_supply_min",
-                self.safety.sensor_supply_min.0,
-                "sensor_supply_max",
-                self.safety.sensor_supply_max.0,
-            ),
-            (
-                "remote",
-                "lowest",
-                self.remote.lowest.0,
-                "highest",
-                self.remote.highest.0,
-            ),
-            (
-                "ride",
-                "end_speed",
-                self.ride.end_speed.0,
-                "begin_speed",
-                self.ride.begin_speed.0,
-            ),
-            (
-                "hydraulics",
-                "smallest_drop",
-                hydraulics.smallest_drop.0,
-                "largest_drop",
-                hydraulics.largest_drop.0,
-            ),
-        ];
-        for (group, low, low_value, high, high_value) in pairs {
-            if low_value >= high_value {
-                return Err(CalibrationError::Crossed { group, low, high });
-            }
+        macro_rules! pairs {
+            ($($group:ident: $low:ident < $high:ident;)+) => {[$((
+                (stringify!($group), stringify!($low), stringify!($high)),
+                self.$group.$low.0 < self.$group.$high.0,
+            )),+]};
         }
-        Ok(())
+        let pairs = pairs! {
+            position: lower_limit < upper_limit;
+            position: stop_band < restart_band;
+            sensors: angle_min < angle_max;
+            sensors: lever_min < lever_max;
+            operator: float_lever < float_exit;
+            current: lowest_resistance < highest_resistance;
+            safety: supply_min < supply_max;
+            safety: sensor_supply_min < sensor_supply_max;
+            remote: lowest < highest;
+            ride: end_speed < begin_speed;
+            hydraulics: smallest_drop < largest_drop;
+        };
+        match pairs.into_iter().find(|(_, is_in_order)| !is_in_order) {
+            Some(((group, low, high), _)) => Err(CalibrationError::Crossed { group, low, high }),
+            None => Ok(()),
+        }
     }
 
     /// While the sensor has yet to show a motion, the hitch goes on with an onset speed: lag times speed is at most the 5
@@ -365,25 +301,7 @@ impl Calibration {
             .travel
             .iter_mut()
             .for_each(|point| visit(&mut point.0));
-        self.hydraulics.visit(visit);
-        self.sensors.visit(visit);
-        self.lock.visit(visit);
-        self.operator.visit(visit);
-        self.motion.visit(visit);
-        self.position.visit(visit);
-        self.rate.visit(visit);
-        self.hold.visit(visit);
-        self.saturation.visit(visit);
-        self.teach.visit(visit);
-        self.current.visit(visit);
-        self.bus.visit(visit);
-        self.remote.visit(visit);
-        self.draft.visit(visit);
-        self.depth.visit(visit);
-        self.slip.visit(visit);
-        self.ride.visit(visit);
-        self.work.visit(visit);
-        self.safety.visit(visit);
+        self.visit_scalars(visit);
         visit_unsigned(&mut self.checksum, visit);
     }
 }

@@ -1,14 +1,5 @@
 //! The calibration of an untaught machine: the manufacturer's valve curves and the rig's linkage.
 
-use super::block::{CALIBRATION_VERSION, Calibration};
-use super::design_parameters::{
-    BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
-    MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
-    SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
-};
-use super::field_parameters::{
-    DepthParameters, DraftParameters, RideParameters, SlipParameters, WorkParameters,
-};
 use super::linkage::{LINKAGE_POINTS, LinkageTable};
 use super::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
 use crate::units::{MicroLitrePerSecond, Micrometre, MilliAmp, MilliDegree};
@@ -100,38 +91,4 @@ const fn travel_points() -> [Micrometre; LINKAGE_POINTS] {
         at += 1;
     }
     points
-}
-
-impl Calibration {
-    /// The calibration of an untaught machine without a checksum, to be filled with something else. Not inlined: the block would take its place on the
-    /// stack of every caller.
-    #[inline(never)]
-    pub(crate) fn unsealed_nominal() -> Self {
-        Self {
-            version: CALIBRATION_VERSION,
-            lift: LIFT,
-            lower: LOWER,
-            linkage: LINKAGE,
-            hydraulics: HydraulicParameters::NOMINAL,
-            sensors: SensorParameters::NOMINAL,
-            lock: LockParameters::NOMINAL,
-            operator: OperatorParameters::NOMINAL,
-            motion: MotionParameters::NOMINAL,
-            position: PositionParameters::NOMINAL,
-            rate: RateParameters::NOMINAL,
-            hold: HoldParameters::NOMINAL,
-            saturation: SaturationParameters::NOMINAL,
-            teach: TeachParameters::NOMINAL,
-            current: CurrentParameters::NOMINAL,
-            bus: BusParameters::NOMINAL,
-            remote: RemoteParameters::NOMINAL,
-            draft: DraftParameters::NOMINAL,
-            depth: DepthParameters::NOMINAL,
-            slip: SlipParameters::NOMINAL,
-            ride: RideParameters::NOMINAL,
-            work: WorkParameters::NOMINAL,
-            safety: SafetyParameters::NOMINAL,
-            checksum: 0,
-        }
-    }
 }

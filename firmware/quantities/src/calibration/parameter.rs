@@ -1,7 +1,9 @@
-//! Scalars of the calibration: each is declared once, with unit, default, range and reason.
+//! Scalars of the calibration: each is declared once, with unit, default, range, class and reason.
 //!
 //! The declaration gives the `#[repr(C)]` field that the ECU uses, the range check that guards it, and
 //! the description from which tools (calibration files, XCP, documentation) read and write it.
+
+use super::class::Class;
 
 /// What a tool needs to know of one scalar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +20,8 @@ pub struct ParameterInfo {
     pub max: i32,
     /// Default, raw counts.
     pub nominal: i32,
+    /// Who may change it, and when.
+    pub class: Class,
     /// What it is and why it has that default. Empty on the ECU, whose flash it would fill with prose.
     pub reason: &'static str,
 }
@@ -47,12 +51,31 @@ pub trait ParameterGroup: Sized {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut i32));
 }
 
-/// Declares a group: `name: Type = default, min..=max;` with the reason as doc comment.
+/// A group of scalars, as it follows the tables of a block.
+#[derive(Clone, Copy, Debug)]
+pub struct Group {
+    /// Name of the group.
+    pub name: &'static str,
+    /// Its scalars, a word each.
+    pub parameters: &'static [ParameterInfo],
+}
+
+impl Group {
+    /// The group of a type.
+    pub(super) const fn of<G: ParameterGroup>() -> Self {
+        Self {
+            name: G::NAME,
+            parameters: G::INFO,
+        }
+    }
+}
+
+/// Declares a group: `name: Type = default, min..=max, class;` with the reason as doc comment.
 macro_rules! parameter_group {
     (
         $(#[$meta:meta])*
         $Group:ident, $group_name:literal {
-            $( $(#[doc = $doc:literal])+ $field:ident : $Type:ident = $nominal:literal, $min:literal ..= $max:literal; )+
+            $( $(#[doc = $doc:literal])+ $field:ident : $Type:ident = $nominal:literal, $min:literal ..= $max:literal, $class:ident; )+
         }
     ) => {
         $(#[$meta])*
@@ -77,6 +100,7 @@ macro_rules! parameter_group {
                     min: $min,
                     max: $max,
                     nominal: $nominal,
+                    class: $crate::calibration::class::Class::$class,
                     reason: if cfg!(target_os = "none") { "" } else { concat!($($doc),+) },
                 }, )+
             ];

@@ -1,5 +1,6 @@
 //! Draft, depth and slip control: what the operator selects, what determines the set point, and which sensor is missing.
 
+use crate::codes;
 use crate::units::Count;
 
 /// Function of the hitch, with the code it has in inputs.
@@ -33,126 +34,58 @@ impl Function {
     }
 }
 
-/// What determines the set point, with the code it has on links and in traces; 0 is the lever alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Reason {
-    /// The draft.
-    Draft = 1,
-    /// Draft and position.
-    Mix = 2,
-    /// The draft, above the lever.
-    DepthLimit = 3,
-    /// The lever is the lowest position, and is reached.
-    Floor = 4,
-    /// The upper limit is reached.
-    Ceiling = 5,
-    /// The slip is above its limit.
-    Slip = 6,
-    /// A function of the draft or the depth is selected, but the implement is above the ground, or the hitch has not rested for
-    /// long enough for the depth sensor: the lever.
-    AboveGround = 7,
-    /// A function has ended or lost its sensor: the present depth is held until the lever takes over.
-    Holds = 8,
-    /// Ride damping moves the hitch about the lever's set point.
-    Ride = 9,
-    /// The switch of quick engagement is held: the hitch is lowered into the soil.
-    Engages = 10,
-    /// The depth of the external sensor.
-    Depth = 11,
-}
-
-impl Reason {
-    /// All of them, in the order of their codes, which begin at 1.
-    pub const ALL: [Self; 11] = [
-        Self::Draft,
-        Self::Mix,
-        Self::DepthLimit,
-        Self::Floor,
-        Self::Ceiling,
-        Self::Slip,
-        Self::AboveGround,
-        Self::Holds,
-        Self::Ride,
-        Self::Engages,
-        Self::Depth,
-    ];
-
-    /// Name as it appears in text outputs.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Draft => "draft",
-            Self::Mix => "mix",
-            Self::DepthLimit => "depth-limit",
-            Self::Floor => "floor",
-            Self::Ceiling => "ceiling",
-            Self::Slip => "slip",
-            Self::AboveGround => "above-ground",
-            Self::Holds => "holds",
-            Self::Ride => "ride",
-            Self::Engages => "engages",
-            Self::Depth => "depth",
-        }
+codes! {
+    /// What determines the set point, with the code it has on links and in traces; 0 is the lever alone.
+    Reason: u8 {
+        /// The draft.
+        Draft = 1, "draft";
+        /// Draft and position.
+        Mix = 2, "mix";
+        /// The draft, above the lever.
+        DepthLimit = 3, "depth-limit";
+        /// The lever is the lowest position, and is reached.
+        Floor = 4, "floor";
+        /// The upper limit is reached.
+        Ceiling = 5, "ceiling";
+        /// The slip is above its limit.
+        Slip = 6, "slip";
+        /// A function of the draft or the depth is selected, but the implement is above the ground, or the hitch has not rested for
+        /// long enough for the depth sensor: the lever.
+        AboveGround = 7, "above-ground";
+        /// A function has ended or lost its sensor: the present depth is held until the lever takes over.
+        Holds = 8, "holds";
+        /// Ride damping moves the hitch about the lever's set point.
+        Ride = 9, "ride";
+        /// The switch of quick engagement is held: the hitch is lowered into the soil.
+        Engages = 10, "engages";
+        /// The depth of the external sensor.
+        Depth = 11, "depth";
     }
 }
 
-/// Sensor of draft, depth or slip control that is lost, with the code it has on links and in traces; 0 is none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Trouble {
-    /// A draft pin is missing or out of its range.
-    PinRange = 1,
-    /// The draft pins disagree.
-    PinsDisagree = 2,
-    /// A draft pin stands still to the last bit while the implement works.
-    PinFrozen = 3,
-    /// The ground speed is missing.
-    GroundSpeed = 4,
-    /// The wheel speed is missing.
-    WheelSpeed = 5,
-    /// A speed stands still to the last bit while the other one changes.
-    SpeedFrozen = 6,
-    /// The depth sensor is missing or out of its range.
-    DepthRange = 7,
-    /// The depth sensor stands still to the last bit while the implement works.
-    DepthFrozen = 8,
-    /// The depth sensor is too noisy.
-    DepthNoisy = 9,
-    /// A draft pin is too noisy.
-    PinNoisy = 10,
-}
-
-impl Trouble {
-    /// All of them, in the order of their codes, which begin at 1.
-    pub const ALL: [Self; 10] = [
-        Self::PinRange,
-        Self::PinsDisagree,
-        Self::PinFrozen,
-        Self::GroundSpeed,
-        Self::WheelSpeed,
-        Self::SpeedFrozen,
-        Self::DepthRange,
-        Self::DepthFrozen,
-        Self::DepthNoisy,
-        Self::PinNoisy,
-    ];
-
-    /// Name as it appears in text outputs.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::PinRange => "pin-range",
-            Self::PinsDisagree => "pins-disagree",
-            Self::PinFrozen => "pin-frozen",
-            Self::GroundSpeed => "ground-speed",
-            Self::WheelSpeed => "wheel-speed",
-            Self::SpeedFrozen => "speed-frozen",
-            Self::DepthRange => "depth-range",
-            Self::DepthFrozen => "depth-frozen",
-            Self::DepthNoisy => "depth-noisy",
-            Self::PinNoisy => "pin-noisy",
-        }
+codes! {
+    /// Sensor of draft, depth or slip control that is lost, with the code it has on links and in traces; 0 is none.
+    Trouble: u8 {
+        /// A draft pin is missing or out of its range.
+        PinRange = 1, "pin-range";
+        /// The draft pins disagree.
+        PinsDisagree = 2, "pins-disagree";
+        /// A draft pin stands still to the last bit while the implement works.
+        PinFrozen = 3, "pin-frozen";
+        /// The ground speed is missing.
+        GroundSpeed = 4, "ground-speed";
+        /// The wheel speed is missing.
+        WheelSpeed = 5, "wheel-speed";
+        /// A speed stands still to the last bit while the other one changes.
+        SpeedFrozen = 6, "speed-frozen";
+        /// The depth sensor is missing or out of its range.
+        DepthRange = 7, "depth-range";
+        /// The depth sensor stands still to the last bit while the implement works.
+        DepthFrozen = 8, "depth-frozen";
+        /// The depth sensor is too noisy.
+        DepthNoisy = 9, "depth-noisy";
+        /// A draft pin is too noisy.
+        PinNoisy = 10, "pin-noisy";
     }
 }
 

@@ -6,6 +6,8 @@ pub mod fault;
 pub mod field;
 pub mod trip;
 
+use super::codes;
+use super::image::Writer;
 use super::units::{
     Count, Duty, MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp,
     MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, MillimetrePerSecond,
@@ -138,69 +140,31 @@ pub struct Inputs {
     pub enable_line_fault: bool,
 }
 
-/// State of the controller, with the code it has on links and in traces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum State {
-    /// Nothing moves until the lever has been moved through the present position.
-    #[default]
-    Locked = 0,
-    /// Resting on the check valve.
-    Holding = 1,
-    /// Lift coil on.
-    Lifting = 2,
-    /// Lowering coil on.
-    Lowering = 3,
-    /// Both coils off, waiting for the check valve to seat.
-    Settling = 4,
-    /// Flow was demanded and nothing moved: resting before the next attempt.
-    Stalled = 5,
-    /// A fault keeps both coils off; see the fault code.
-    Fault = 6,
-    /// Both coils off until the operator opens the transport lock.
-    TransportLock = 7,
-    /// Down with the lever at its bottom stop: both coils off, and no position of the hitch is a fault.
-    Floating = 8,
-    /// Finding thresholds and ends, as long as the button is held.
-    Teaching = 9,
-}
-
-impl State {
-    /// All of them, in the order of their codes.
-    pub const ALL: [Self; 10] = [
-        Self::Locked,
-        Self::Holding,
-        Self::Lifting,
-        Self::Lowering,
-        Self::Settling,
-        Self::Stalled,
-        Self::Fault,
-        Self::TransportLock,
-        Self::Floating,
-        Self::Teaching,
-    ];
-
-    /// The state with a code.
-    #[must_use]
-    pub fn from_code(code: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|state| *state as u8 == code)
-    }
-
-    /// Name as it appears in text outputs.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Locked => "locked",
-            Self::Holding => "holding",
-            Self::Lifting => "lifting",
-            Self::Lowering => "lowering",
-            Self::Settling => "settling",
-            Self::Stalled => "stalled",
-            Self::Fault => "fault",
-            Self::TransportLock => "transport-lock",
-            Self::Floating => "floating",
-            Self::Teaching => "teaching",
-        }
+codes! {
+    /// State of the controller, with the code it has on links and in traces.
+    #[derive(Default)]
+    State: u8 {
+        /// Nothing moves until the lever has been moved through the present position.
+        #[default]
+        Locked = 0, "locked";
+        /// Resting on the check valve.
+        Holding = 1, "holding";
+        /// Lift coil on.
+        Lifting = 2, "lifting";
+        /// Lowering coil on.
+        Lowering = 3, "lowering";
+        /// Both coils off, waiting for the check valve to seat.
+        Settling = 4, "settling";
+        /// Flow was demanded and nothing moved: resting before the next attempt.
+        Stalled = 5, "stalled";
+        /// A fault keeps both coils off; see the fault code.
+        Fault = 6, "fault";
+        /// Both coils off until the operator opens the transport lock.
+        TransportLock = 7, "transport-lock";
+        /// Down with the lever at its bottom stop: both coils off, and no position of the hitch is a fault.
+        Floating = 8, "floating";
+        /// Finding thresholds and ends, as long as the button is held.
+        Teaching = 9, "teaching";
     }
 }
 
@@ -300,12 +264,12 @@ impl Inputs {
     /// control are not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
-        let mut writer = Writer::new([0; INPUT_BYTES]);
+        let mut writer = Writer::<INPUT_BYTES>::default();
         writer.put(self.valid_and_switches().to_le_bytes());
         self.fields()
             .into_iter()
             .for_each(|field| writer.put(field.unwrap_or(0).to_le_bytes()));
-        writer.bytes
+        writer.bytes()
     }
 
     /// The inputs of an image. Unknown validity bits are ignored.
@@ -354,7 +318,7 @@ impl Outputs {
     /// values in the order of the fields. Draft, in-work and the time until then are not in the image.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; OUTPUT_BYTES] {
-        let mut writer = Writer::new([0; OUTPUT_BYTES]);
+        let mut writer = Writer::<OUTPUT_BYTES>::default();
         writer.put([
             self.state as u8,
             self.fault.map_or(0, |fault| fault as u8),
@@ -376,30 +340,7 @@ impl Outputs {
         values
             .into_iter()
             .for_each(|value| writer.put(value.to_le_bytes()));
-        writer.bytes
-    }
-}
-
-/// Writes words one after the other; what doesn't fit is dropped.
-struct Writer<const N: usize> {
-    bytes: [u8; N],
-    at: usize,
-}
-
-impl<const N: usize> Writer<N> {
-    const fn new(bytes: [u8; N]) -> Self {
-        Self { bytes, at: 0 }
-    }
-
-    fn put(&mut self, word: [u8; 4]) {
-        if let Some(target) = self
-            .bytes
-            .get_mut(self.at..)
-            .and_then(|rest| rest.first_chunk_mut::<4>())
-        {
-            *target = word;
-        }
-        self.at = self.at.saturating_add(4);
+        writer.bytes()
     }
 }
 

@@ -3,19 +3,21 @@
 //! The register layouts come from `stm32-metapac`, whose accesses are safe. Reserved bits and the order of writes are
 //! checked against the reference manuals (RM0090 for the STM32F405, RM0440 for the STM32G474).
 
+mod can;
 mod clock;
 mod clock_source;
 mod coils;
 mod converters;
+mod core_clock;
 mod factory_reference;
 mod flash;
 mod image_check;
-mod inbox;
 mod log;
 mod oscillators;
 mod pins;
 mod ram_test;
 mod register_check;
+mod registers;
 mod reset;
 mod serial_number;
 mod slow_clock;
@@ -36,6 +38,7 @@ compile_error!(
 
 use hitch_ecu::FlashRegions;
 
+pub use can::Can;
 pub use clock::Clock;
 pub use clock_source::Source;
 pub use coils::{Coils, cut, run};
@@ -44,7 +47,6 @@ pub use factory_reference::scaling;
 pub use flash::DataFlash;
 pub use image_check::ImageCheck;
 pub use oscillators::Oscillators;
-pub use part::Can;
 pub use part::flash::note_damaged_read;
 pub use register_check::RegisterCheck;
 pub use reset::reset_cause;

@@ -8,6 +8,7 @@
 //! board in the cold. Within the limits, an error of the crystal looks the same as an error of the internal oscillator.
 
 use super::clock_source::Source;
+use super::core_clock;
 use super::part;
 use super::part::slow_clock;
 
@@ -38,7 +39,7 @@ impl Oscillators {
     pub fn measure() -> Self {
         slow_clock::start();
         let internal = counts();
-        part::run_from_crystal();
+        core_clock::run_from_crystal(part::WAIT_STATES);
         let crystal = counts();
         let (Some(internal), Some(crystal)) = (internal, crystal) else {
             return Self {

@@ -26,9 +26,13 @@ impl RegisterCheck {
 
 /// A position-dependent checksum: a change of one bit always changes it.
 fn signature() -> u32 {
-    REGISTERS.iter().fold(0, |sum: u32, &(address, mask)| {
-        // SAFETY: the registers of the list can be read without side effects.
-        let word = unsafe { (address as *const u32).read_volatile() };
-        (sum.rotate_left(5) ^ (word & mask)).wrapping_mul(0x0100_0193)
-    })
+    let mut sum = 0_u32;
+    for &(base, offsets, mask) in REGISTERS {
+        for offset in offsets {
+            // SAFETY: the registers of the list can be read without side effects.
+            let word = unsafe { ((base | offset) as *const u32).read_volatile() };
+            sum = (sum.rotate_left(5) ^ (word & mask)).wrapping_mul(0x0100_0193);
+        }
+    }
+    sum
 }

@@ -5,119 +5,87 @@
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_protocols::can::Frame;
+use stm32_metapac::CAN1;
 use stm32_metapac::can::vals::{Ide, Rtr};
-use stm32_metapac::{CAN1, GPIOA};
-
-use crate::board::inbox::Inbox;
-use crate::board::pins;
 
 /// CAN1 on PA11 and PA12 (data sheet, table 9).
-const FUNCTION: u8 = 9;
+pub const FUNCTION: u8 = 9;
 
-/// The bus.
-pub struct Can {
-    inbox: Inbox,
+/// Joins the bus.
+pub fn join() {
+    CAN1.mcr().modify(|w| {
+        w.set_sleep(false);
+        w.set_inrq(true);
+    });
+    while !CAN1.msr().read().inak() {}
+    CAN1.mcr().modify(|w| {
+        // Automatic recovery after bus-off, and transmission in the order of requests.
+        w.set_abom(true);
+        w.set_txfp(true);
+    });
+    // 42 MHz / 12 = 3.5 MHz: 14 quanta per bit, sampled after 12 (86 %; J1939-11 requires 80 to 90 %).
+    CAN1.btr().write(|w| {
+        w.set_brp(12 - 1);
+        w.set_ts(0, 11 - 1);
+        w.set_ts(1, 2 - 1);
+        w.set_sjw(2 - 1);
+    });
+    accept_everything();
+    CAN1.mcr().modify(|w| w.set_inrq(false));
 }
 
-impl Can {
-    /// Joins the bus; it is synchronised after eleven recessive bits, which is not waited for.
-    pub fn start() -> Self {
-        pins::alternate(GPIOA, 11, FUNCTION);
-        pins::alternate(GPIOA, 12, FUNCTION);
-        CAN1.mcr().modify(|w| {
-            w.set_sleep(false);
-            w.set_inrq(true);
-        });
-        while !CAN1.msr().read().inak() {}
-        CAN1.mcr().modify(|w| {
-            // Automatic recovery after bus-off, and transmission in the order of requests.
-            w.set_abom(true);
-            w.set_txfp(true);
-        });
-        // 42 MHz / 12 = 3.5 MHz: 14 quanta per bit, sampled after 12 (86 %; J1939-11 requires 80 to 90 %).
-        CAN1.btr().write(|w| {
-            w.set_brp(12 - 1);
-            w.set_ts(0, 11 - 1);
-            w.set_ts(1, 2 - 1);
-            w.set_sjw(2 - 1);
-        });
-        accept_everything();
-        CAN1.mcr().modify(|w| w.set_inrq(false));
-        Self {
-            inbox: Inbox::new(),
-        }
+/// Whether the hardware queue has dropped frames since the last call.
+pub fn take_overrun() -> bool {
+    let overrun = CAN1.rfr(0).read().fovr();
+    if overrun {
+        // Writing one clears.
+        CAN1.rfr(0).write(|w| w.set_fovr(true));
     }
+    overrun
+}
 
-    /// Empties the hardware queue, which holds three frames.
-    pub fn listen(&mut self) {
-        while let Some(frame) = received() {
-            self.inbox.put(frame);
-        }
-        if CAN1.rfr(0).read().fovr() {
-            // Writing one clears.
-            CAN1.rfr(0).write(|w| w.set_fovr(true));
-            self.inbox.count_dropped();
-        }
+/// Whether it has left the bus after too many errors.
+pub fn is_off() -> bool {
+    CAN1.esr().read().boff()
+}
+
+/// Queues a frame; false if no mailbox is free.
+pub fn send(frame: &Frame) -> bool {
+    let status = CAN1.tsr().read();
+    let free = usize::from(status.code()).min(2);
+    if !status.tme(free) {
+        return false;
     }
-
-    /// The oldest received frame.
-    pub fn next_heard(&mut self) -> Option<Frame> {
-        self.inbox.take()
-    }
-
-    /// Whether it has left the bus after too many errors.
-    pub fn is_off(&self) -> bool {
-        CAN1.esr().read().boff()
-    }
-
-    /// Number of received frames that were dropped; it wraps.
-    pub const fn dropped(&self) -> u16 {
-        self.inbox.dropped()
-    }
-
-    /// Queues a frame; false if no mailbox is free.
-    pub fn send(&mut self, frame: &Frame) -> bool {
-        let status = CAN1.tsr().read();
-        let free = usize::from(status.code()).min(2);
-        if !status.tme(free) {
-            return false;
-        }
-        let mailbox = CAN1.tx(free);
-        let mut bytes = [0; Frame::MOST_BYTES];
-        bytes
-            .iter_mut()
-            .zip(frame.data())
-            .for_each(|(target, &byte)| *target = byte);
-        let [a, b, c, d, e, f, g, h] = bytes;
-        mailbox.tdtr().write(|w| w.set_dlc(frame.length()));
-        mailbox
-            .tdlr()
-            .write(|w| w.0 = u32::from_le_bytes([a, b, c, d]));
-        mailbox
-            .tdhr()
-            .write(|w| w.0 = u32::from_le_bytes([e, f, g, h]));
-        mailbox.tir().write(|w| {
-            match frame.id() {
-                Id::Standard(id) => w.set_stid(id.as_raw()),
-                Id::Extended(id) => {
-                    w.set_ide(Ide::EXTENDED);
-                    w.set_stid((id.as_raw() >> 18) as u16);
-                    w.set_exid(id.as_raw() & 0x3_FFFF);
-                }
+    let mailbox = CAN1.tx(free);
+    let [a, b, c, d, e, f, g, h] = frame.padded();
+    mailbox.tdtr().write(|w| w.set_dlc(frame.length()));
+    mailbox
+        .tdlr()
+        .write(|w| w.0 = u32::from_le_bytes([a, b, c, d]));
+    mailbox
+        .tdhr()
+        .write(|w| w.0 = u32::from_le_bytes([e, f, g, h]));
+    mailbox.tir().write(|w| {
+        match frame.id() {
+            Id::Standard(id) => w.set_stid(id.as_raw()),
+            Id::Extended(id) => {
+                w.set_ide(Ide::EXTENDED);
+                w.set_stid((id.as_raw() >> 18) as u16);
+                w.set_exid(id.as_raw() & 0x3_FFFF);
             }
-            w.set_rtr(if frame.is_remote() {
-                Rtr::REMOTE
-            } else {
-                Rtr::DATA
-            });
-            w.set_txrq(true);
+        }
+        w.set_rtr(if frame.is_remote() {
+            Rtr::REMOTE
+        } else {
+            Rtr::DATA
         });
-        true
-    }
+        w.set_txrq(true);
+    });
+    true
 }
 
 /// The oldest frame in the hardware queue.
-fn received() -> Option<Frame> {
+pub fn received() -> Option<Frame> {
     if CAN1.rfr(0).read().fmp() == 0 {
         return None;
     }
@@ -130,16 +98,11 @@ fn received() -> Option<Frame> {
         }
         Ide::STANDARD => StandardId::new(rir.stid()).map(Id::Standard),
     };
-    let low = mailbox.rdlr().read().0.to_le_bytes();
-    let high = mailbox.rdhr().read().0.to_le_bytes();
+    let [a, b, c, d] = mailbox.rdlr().read().0.to_le_bytes();
+    let [e, f, g, h] = mailbox.rdhr().read().0.to_le_bytes();
     CAN1.rfr(0).write(|w| w.set_rfom(true));
-    let [a, b, c, d] = low;
-    let [e, f, g, h] = high;
-    let bytes = [a, b, c, d, e, f, g, h];
-    match rir.rtr() {
-        Rtr::DATA => Frame::data_frame(id?, bytes.get(..usize::from(length))?),
-        Rtr::REMOTE => Frame::remote_frame(id?, usize::from(length)),
-    }
+    let is_remote = rir.rtr() == Rtr::REMOTE;
+    Frame::from_padded(id?, is_remote, length, [a, b, c, d, e, f, g, h])
 }
 
 /// One 32-bit filter that passes all frames, into FIFO 0.

@@ -1,6 +1,6 @@
 //! STM32F405RG: clocks and peripherals.
 
-mod can;
+pub mod can;
 pub mod converters;
 pub mod factory_reference;
 pub mod flash;
@@ -8,18 +8,18 @@ pub mod register_check;
 mod scaling;
 pub mod slow_clock;
 
-pub use can::Can;
 pub use scaling::SCALING;
 
+use stm32_metapac::RCC;
 use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Pllm, Plln, Pllp, Pllq, Pllsrc, Ppre, Sw};
-use stm32_metapac::{FLASH, RCC};
 
 use crate::board::clock_source::Source;
+use crate::board::core_clock;
 
 /// TIM1 on PA8 and PA9 (data sheet, table 9).
 pub const TIMER_FUNCTION: u8 = 1;
-/// The crystal that the image is made for.
+/// The crystal that the image is made for. The part allows up to 26 MHz.
 pub const CRYSTAL_HZ: u32 = 8_000_000;
 /// The internal oscillator.
 pub const INTERNAL_HZ: u32 = 16_000_000;
@@ -29,27 +29,14 @@ pub const INTERNAL_RANGE_PER_MILLE: [u32; 2] = [920, 1_045];
 /// Clock of TIM2 and TIM5: twice that of APB1.
 pub const TIMER_HZ: u32 = 84_000_000;
 
-/// Runs the core from the crystal, which may have any frequency that the part allows, up to 26 MHz. The wait states are
-/// those of the full clock.
-pub fn run_from_crystal() {
-    RCC.cr().modify(|w| w.set_hseon(true));
-    while !RCC.cr().read().hserdy() {}
-    FLASH.acr().write(|w| {
-        w.set_latency(Latency::WS5);
-        w.set_prften(true);
-        w.set_icen(true);
-        w.set_dcen(true);
-    });
-    while FLASH.acr().read().latency() != Latency::WS5 {}
-    switch_to(Sw::HSE);
-}
+/// Wait states of the flash at the full clock.
+pub const WAIT_STATES: Latency = Latency::WS5;
 
 /// 168 MHz; APB1 runs at 42 MHz, APB2 at 84 MHz. A failure of the crystal raises the non-maskable interrupt.
 pub fn start_clocks(source: Source) {
     let is_crystal = source == Source::Crystal;
     if !is_crystal {
-        switch_to(Sw::HSI);
-        RCC.cr().modify(|w| w.set_hseon(false));
+        core_clock::leave_crystal();
     }
     RCC.pllcfgr().write(|w| {
         // 8 MHz / 4 or 16 MHz / 8, * 168 / 2
@@ -59,22 +46,13 @@ pub fn start_clocks(source: Source) {
         w.set_pllp(Pllp::DIV2);
         w.set_pllq(Pllq::DIV7);
     });
-    RCC.cr().modify(|w| {
-        w.set_pllon(true);
-        w.set_csson(is_crystal);
-    });
-    while !RCC.cr().read().pllrdy() {}
+    core_clock::start_pll(is_crystal);
     RCC.cfgr().modify(|w| {
         w.set_ppre1(Ppre::DIV4);
         w.set_ppre2(Ppre::DIV2);
     });
-    switch_to(Sw::PLL1_P);
+    core_clock::switch_to(Sw::PLL1_P);
     start_peripherals();
-}
-
-fn switch_to(clock: Sw) {
-    RCC.cfgr().modify(|w| w.set_sw(clock));
-    while RCC.cfgr().read().sws() != clock {}
 }
 
 fn start_peripherals() {

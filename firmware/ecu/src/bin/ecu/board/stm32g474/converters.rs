@@ -17,8 +17,8 @@ use crate::board::pins;
 const TIM1_TRGO: u8 = 0;
 /// Sets the pins to analogue mode, and the clock of the converters.
 pub fn start_pins_and_clocks() {
-    for (port, pin) in ANALOG_PINS {
-        pins::analog(port, pin);
+    for (port, numbers) in ANALOG_PINS {
+        numbers.iter().for_each(|&pin| pins::analog(port, pin));
     }
     // 168 MHz / 4 = 42 MHz, of 60 MHz allowed.
     for common in [ADC12_COMMON, ADC345_COMMON] {

@@ -1,6 +1,6 @@
 //! STM32G474RE: clocks and peripherals. What differs between boards with this part is data of the board.
 
-mod can;
+pub mod can;
 pub mod converters;
 mod delay;
 pub mod factory_reference;
@@ -17,13 +17,13 @@ mod board_data;
 
 use board_data::CRYSTAL_DIVIDER;
 pub use board_data::{CRYSTAL_HZ, SCALING};
-pub use can::Can;
 
 use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Fdcansel, Hpre, Pllm, Plln, Pllr, Pllsrc, Sw};
-use stm32_metapac::{FLASH, PWR, RCC, SYSCFG};
+use stm32_metapac::{PWR, RCC, SYSCFG};
 
 use crate::board::clock_source::Source;
+use crate::board::core_clock;
 
 /// TIM1 on PA8 and PA9 (data sheet, table 13).
 pub const TIMER_FUNCTION: u8 = 6;
@@ -35,27 +35,14 @@ pub const INTERNAL_RANGE_PER_MILLE: [u32; 2] = [972, 1_021];
 /// Clock of TIM2 and TIM16: that of the core.
 pub const TIMER_HZ: u32 = 168_000_000;
 
-/// Runs the core from the crystal, which may have any frequency that the part allows, up to 48 MHz. The wait states are
-/// those of the full clock.
-pub fn run_from_crystal() {
-    RCC.cr().modify(|w| w.set_hseon(true));
-    while !RCC.cr().read().hserdy() {}
-    FLASH.acr().write(|w| {
-        w.set_latency(Latency::WS4);
-        w.set_prften(true);
-        w.set_icen(true);
-        w.set_dcen(true);
-    });
-    while FLASH.acr().read().latency() != Latency::WS4 {}
-    switch_to(Sw::HSE);
-}
+/// Wait states of the flash at the full clock.
+pub const WAIT_STATES: Latency = Latency::WS4;
 
 /// 168 MHz; the buses have the same clock. A failure of the crystal raises the non-maskable interrupt.
 pub fn start_clocks(source: Source) {
     let is_crystal = source == Source::Crystal;
     if !is_crystal {
-        switch_to(Sw::HSI);
-        RCC.cr().modify(|w| w.set_hseon(false));
+        core_clock::leave_crystal();
     }
     RCC.apb1enr1().modify(|w| w.set_pwren(true));
     let _ = RCC.apb1enr1().read();
@@ -73,22 +60,13 @@ pub fn start_clocks(source: Source) {
         w.set_pllr(Pllr::DIV2);
         w.set_pllren(true);
     });
-    RCC.cr().modify(|w| {
-        w.set_pllon(true);
-        w.set_csson(is_crystal);
-    });
-    while !RCC.cr().read().pllrdy() {}
+    core_clock::start_pll(is_crystal);
     // At half the clock for at least one microsecond (RM0440, 7.2.7).
     RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV2));
-    switch_to(Sw::PLL1_R);
+    core_clock::switch_to(Sw::PLL1_R);
     cortex_m::asm::delay(168);
     RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV1));
     start_peripherals();
-}
-
-fn switch_to(clock: Sw) {
-    RCC.cfgr().modify(|w| w.set_sw(clock));
-    while RCC.cfgr().read().sws() != clock {}
 }
 
 fn start_peripherals() {

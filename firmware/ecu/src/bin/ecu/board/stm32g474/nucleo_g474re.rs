@@ -18,23 +18,10 @@ pub const CRYSTAL_HZ: u32 = 24_000_000;
 pub const CRYSTAL_DIVIDER: Pllm = Pllm::DIV6;
 
 /// The converters' inputs.
-pub const ANALOG_PINS: [(Gpio, usize); 16] = [
-    (GPIOA, 0),
-    (GPIOA, 1),
-    (GPIOA, 4),
-    (GPIOA, 5),
-    (GPIOA, 6),
-    (GPIOA, 7),
-    (GPIOB, 0),
-    (GPIOB, 1),
-    (GPIOB, 13),
-    (GPIOB, 15),
-    (GPIOC, 0),
-    (GPIOC, 1),
-    (GPIOC, 2),
-    (GPIOC, 3),
-    (GPIOC, 4),
-    (GPIOC, 5),
+pub const ANALOG_PINS: [(Gpio, &[usize]); 3] = [
+    (GPIOA, &[0, 1, 4, 5, 6, 7]),
+    (GPIOB, &[0, 1, 13, 15]),
+    (GPIOC, &[0, 1, 2, 3, 4, 5]),
 ];
 
 /// The channels of the three sequences in the order of their ranks, with their signals.

@@ -1,85 +1,44 @@
 //! Constant configuration registers of the STM32G474, with masks of the checked bits.
 
-/// All bits.
-const ALL: u32 = u32::MAX;
+use crate::board::registers::{ALL, CLOCK_TIMER, DRIVER_TIMER, PORT, Registers};
 
-/// Address and mask.
-pub const REGISTERS: &[(u32, u32)] = &[
+/// State without what hardware clears.
+const CONVERTER_STATE: u32 = 0x3000_0001;
+/// Configuration, sampling times, sequence.
+const CONVERTER: &[u32] = &[0x0C, 0x14, 0x18, 0x4C];
+
+/// The registers.
+pub const REGISTERS: &[Registers] = &[
     // RCC: oscillators without their ready flags, PLL, clocks, enabled peripherals.
-    (0x4002_1000, 0x010D_0100),
-    (0x4002_100C, ALL),
-    (0x4002_1008, ALL),
-    (0x4002_104C, ALL),
-    (0x4002_1058, ALL),
-    (0x4002_1060, ALL),
-    (0x4002_1088, ALL),
+    (0x4002_1000, &[0x00], 0x010D_0100),
+    (0x4002_1000, &[0x0C, 0x08, 0x4C, 0x58, 0x60, 0x88], ALL),
     // Boost mode.
-    (0x4000_7080, ALL),
+    (0x4000_7000, &[0x80], ALL),
     // Wait states and caches.
-    (0x4002_2000, ALL),
+    (0x4002_2000, &[0x00], ALL),
     // A lockup of the core switches the outputs off.
-    (0x4001_0018, ALL),
-    // GPIOA: mode, type, speed, pulls, functions.
-    (0x4800_0000, ALL),
-    (0x4800_0004, ALL),
-    (0x4800_0008, ALL),
-    (0x4800_000C, ALL),
-    (0x4800_0020, ALL),
-    (0x4800_0024, ALL),
-    // GPIOB: mode, type, speed, pulls, functions.
-    (0x4800_0400, ALL),
-    (0x4800_0404, ALL),
-    (0x4800_0408, ALL),
-    (0x4800_040C, ALL),
-    (0x4800_0420, ALL),
-    (0x4800_0424, ALL),
-    // GPIOC: mode, type, speed, pulls, functions.
-    (0x4800_0800, ALL),
-    (0x4800_0804, ALL),
-    (0x4800_0808, ALL),
-    (0x4800_080C, ALL),
-    (0x4800_0820, ALL),
-    (0x4800_0824, ALL),
-    // TIM1: control, modes, outputs, prescaler, period, repetition, break.
-    (0x4001_2C00, ALL),
-    (0x4001_2C04, ALL),
-    (0x4001_2C18, ALL),
-    (0x4001_2C20, ALL),
-    (0x4001_2C28, ALL),
-    (0x4001_2C2C, ALL),
-    (0x4001_2C30, ALL),
-    (0x4001_2C44, ALL),
-    // TIM2: control and prescaler.
-    (0x4000_0000, ALL),
-    (0x4000_0028, ALL),
+    (0x4001_0000, &[0x18], ALL),
+    // GPIOA to GPIOC.
+    (0x4800_0000, PORT, ALL),
+    (0x4800_0400, PORT, ALL),
+    (0x4800_0800, PORT, ALL),
+    // TIM1 and TIM2.
+    (0x4001_2C00, DRIVER_TIMER, ALL),
+    (0x4000_0000, CLOCK_TIMER, ALL),
     // TIM16: control, capture, input.
-    (0x4001_4400, ALL),
-    (0x4001_4418, ALL),
-    (0x4001_4420, ALL),
-    (0x4001_445C, ALL),
-    // ADC1 to ADC3: state without what hardware clears, configuration, sampling times, sequence.
-    (0x5000_0008, 0x3000_0001),
-    (0x5000_000C, ALL),
-    (0x5000_0014, ALL),
-    (0x5000_0018, ALL),
-    (0x5000_004C, ALL),
-    (0x5000_0108, 0x3000_0001),
-    (0x5000_010C, ALL),
-    (0x5000_0114, ALL),
-    (0x5000_0118, ALL),
-    (0x5000_014C, ALL),
-    (0x5000_0408, 0x3000_0001),
-    (0x5000_040C, ALL),
-    (0x5000_0414, ALL),
-    (0x5000_0418, ALL),
-    (0x5000_044C, ALL),
-    (0x5000_0308, ALL),
-    (0x5000_0708, ALL),
+    (0x4001_4400, &[0x00, 0x18, 0x20, 0x5C], ALL),
+    // ADC1 to ADC3, and what they have in common.
+    (0x5000_0000, &[0x08], CONVERTER_STATE),
+    (0x5000_0000, CONVERTER, ALL),
+    (0x5000_0100, &[0x08], CONVERTER_STATE),
+    (0x5000_0100, CONVERTER, ALL),
+    (0x5000_0400, &[0x08], CONVERTER_STATE),
+    (0x5000_0400, CONVERTER, ALL),
+    (0x5000_0300, &[0x08], ALL),
+    (0x5000_0700, &[0x08], ALL),
     // CAN: configuration without the bits of initialisation, bit timing, filter.
-    (0x4000_6418, 0x0000_FFFC),
-    (0x4000_641C, ALL),
-    (0x4000_6480, ALL),
+    (0x4000_6400, &[0x18], 0x0000_FFFC),
+    (0x4000_6400, &[0x1C, 0x80], ALL),
     // Debug freezes.
-    (0xE004_2008, ALL),
-    (0xE004_2010, ALL),
+    (0xE004_2000, &[0x08, 0x10], ALL),
 ];
