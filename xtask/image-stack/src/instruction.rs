@@ -143,6 +143,13 @@ impl Decoder {
     }
 }
 
+fn register_of(operand: &ArmOperand) -> Option<RegId> {
+    match operand.op_type {
+        ArmOperandType::Reg(register) => Some(register),
+        _ => None,
+    }
+}
+
 struct Parts<'a> {
     id: u32,
     arm: &'a ArmInsnDetail<'a>,
@@ -155,10 +162,7 @@ impl Parts<'_> {
     }
 
     fn register(&self, index: usize) -> Option<RegId> {
-        match self.operands.get(index)?.op_type {
-            ArmOperandType::Reg(register) => Some(register),
-            _ => None,
-        }
+        register_of(self.operands.get(index)?)
     }
 
     fn immediate(&self) -> Option<i32> {
@@ -171,11 +175,7 @@ impl Parts<'_> {
     }
 
     fn registers(&self) -> impl Iterator<Item = RegId> {
-        let register = |operand: &ArmOperand| match operand.op_type {
-            ArmOperandType::Reg(register) => Some(register),
-            _ => None,
-        };
-        self.operands.iter().filter_map(register)
+        self.operands.iter().filter_map(register_of)
     }
 
     fn condition(&self) -> Option<Condition> {
@@ -214,14 +214,18 @@ impl Parts<'_> {
         self.arm.writeback().then_some(memory.disp() + behind)
     }
 
-    /// Bytes of the floating-point registers among the operands: a word each, or two of a double one.
-    fn floating_bytes(&self) -> Result<i32> {
-        use ArmReg::{ARM_REG_D0, ARM_REG_D31, ARM_REG_S0, ARM_REG_S31};
+    /// Bytes of the registers among the operands that are saved or restored: a word each, or two of a double one.
+    fn saved_bytes(&self) -> Result<i32> {
+        use ArmReg::{
+            ARM_REG_D0, ARM_REG_D31, ARM_REG_R0, ARM_REG_R12, ARM_REG_S0, ARM_REG_S31,
+        };
         let is_in = |register: RegId, first: ArmReg::Type, last: ArmReg::Type| {
             (first..=last).contains(&ArmReg::Type::from(register.0))
         };
         let of_one = |register: RegId| match register {
             STACK_POINTER => Ok(0),
+            LINK | PROGRAM_COUNTER => Ok(WORD_BYTES),
+            _ if is_in(register, ARM_REG_R0, ARM_REG_R12) => Ok(WORD_BYTES),
             _ if is_in(register, ARM_REG_S0, ARM_REG_S31) => Ok(WORD_BYTES),
             _ if is_in(register, ARM_REG_D0, ARM_REG_D31) => Ok(2 * WORD_BYTES),
             _ => bail!("saves a register that isn't known"),
@@ -236,18 +240,15 @@ impl Parts<'_> {
             ARM_INS_STM, ARM_INS_STMDB, ARM_INS_SUB, ARM_INS_SUBW, ARM_INS_VLDMDB, ARM_INS_VLDMIA,
             ARM_INS_VPOP, ARM_INS_VPUSH, ARM_INS_VSTMDB, ARM_INS_VSTMIA,
         };
-        let words = |count: usize| i32::try_from(count).unwrap_or(i32::MAX) * WORD_BYTES;
-        if self.is(&[ARM_INS_PUSH]) {
-            return Ok(words(self.operands.len()));
+        const SAVING: [ArmInsn; 2] = [ARM_INS_STMDB, ARM_INS_VSTMDB];
+        const RESTORING: [ArmInsn; 2] = [ARM_INS_LDM, ARM_INS_VLDMIA];
+        const UPSIDE_DOWN: [ArmInsn; 4] =
+            [ARM_INS_LDMDB, ARM_INS_STM, ARM_INS_VLDMDB, ARM_INS_VSTMIA];
+        if self.is(&[ARM_INS_PUSH, ARM_INS_VPUSH]) {
+            return self.saved_bytes();
         }
-        if self.is(&[ARM_INS_POP]) {
-            return Ok(-words(self.operands.len()));
-        }
-        if self.is(&[ARM_INS_VPUSH]) {
-            return self.floating_bytes();
-        }
-        if self.is(&[ARM_INS_VPOP]) {
-            return Ok(-self.floating_bytes()?);
+        if self.is(&[ARM_INS_POP, ARM_INS_VPOP]) {
+            return Ok(-self.saved_bytes()?);
         }
         if let Some(moved) = self.written_back() {
             return Ok(-moved);
@@ -256,33 +257,15 @@ impl Parts<'_> {
             return Ok(0);
         }
         let by_itself = self.operands.len() == 2 || self.register(1) == Some(STACK_POINTER);
+        let is_block = self.is(&SAVING) || self.is(&RESTORING) || self.is(&UPSIDE_DOWN);
         match self.immediate() {
             Some(bytes) if by_itself && self.is(&[ARM_INS_SUB, ARM_INS_SUBW]) => Ok(bytes),
             Some(bytes) if by_itself && self.is(&[ARM_INS_ADD, ARM_INS_ADDW]) => Ok(-bytes),
-            _ if self.is(&[ARM_INS_LDM, ARM_INS_STM, ARM_INS_LDMDB, ARM_INS_STMDB]) => {
-                let count = words(self.operands.len() - 1);
-                match (self.arm.writeback(), self.is(&[ARM_INS_STMDB])) {
-                    (false, _) => Ok(0),
-                    (true, true) => Ok(count),
-                    (true, false) if self.is(&[ARM_INS_LDM]) => Ok(-count),
-                    _ => bail!("uses the stack upside down"),
-                }
-            }
-            _ if self.is(&[
-                ARM_INS_VLDMIA,
-                ARM_INS_VLDMDB,
-                ARM_INS_VSTMIA,
-                ARM_INS_VSTMDB,
-            ]) =>
-            {
-                match (self.arm.writeback(), self.is(&[ARM_INS_VSTMDB])) {
-                    (false, _) => Ok(0),
-                    (true, true) => self.floating_bytes(),
-                    (true, false) if self.is(&[ARM_INS_VLDMIA]) => Ok(-self.floating_bytes()?),
-                    _ => bail!("uses the stack upside down"),
-                }
-            }
-            _ => bail!("moves the stack pointer in a way that can't be followed"),
+            _ if !is_block => bail!("moves the stack pointer in a way that can't be followed"),
+            _ if !self.arm.writeback() => Ok(0),
+            _ if self.is(&SAVING) => self.saved_bytes(),
+            _ if self.is(&RESTORING) => Ok(-self.saved_bytes()?),
+            _ => bail!("uses the stack upside down"),
         }
     }
 
