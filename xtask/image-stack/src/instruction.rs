@@ -216,9 +216,7 @@ impl Parts<'_> {
 
     /// Bytes of the registers among the operands that are saved or restored: a word each, or two of a double one.
     fn saved_bytes(&self) -> Result<i32> {
-        use ArmReg::{
-            ARM_REG_D0, ARM_REG_D31, ARM_REG_R0, ARM_REG_R12, ARM_REG_S0, ARM_REG_S31,
-        };
+        use ArmReg::{ARM_REG_D0, ARM_REG_D31, ARM_REG_R0, ARM_REG_R12, ARM_REG_S0, ARM_REG_S31};
         let is_in = |register: RegId, first: ArmReg::Type, last: ArmReg::Type| {
             (first..=last).contains(&ArmReg::Type::from(register.0))
         };

@@ -6,41 +6,6 @@ use anyhow::{Context, Result, bail, ensure};
 
 use super::Step;
 
-/// Inputs in the order of a recorded trace, which is that of `hitch_quantities::Inputs::to_bytes`.
-pub const RECORDED: [&str; 18] = [
-    "lever",
-    "jog",
-    "rocker_angle",
-    "cylinder_pressure",
-    "pump_pressure",
-    "oil_temperature",
-    "supply",
-    "upper_limit",
-    "lowering_dial",
-    "engine_speed",
-    "lift_current",
-    "lower_current",
-    "step_time",
-    "second_angle",
-    "sensor_supply",
-    "reference",
-    "set_point",
-    "clock_ratio",
-];
-
-/// Contacts and their bits in the first word of a record.
-pub const RECORDED_BITS: [(&str, usize); 9] = [
-    ("up_released", 22),
-    ("down_released", 23),
-    ("transport_lock", 24),
-    ("hold", 25),
-    ("quick_lift", 26),
-    ("teach", 27),
-    ("consent", 28),
-    ("engage", 29),
-    ("enable_line_fault", 30),
-];
-
 /// A parameter of the calibration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {

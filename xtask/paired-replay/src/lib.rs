@@ -19,10 +19,11 @@ pub mod sources;
 pub mod trace;
 
 use anyhow::{Result, ensure};
-use replay_side::{ABSENT, Event};
+use hitch_quantities::Inputs;
+use replay_side::Event;
 
 use differences::{Comparison, Differences};
-use interface::{Interface, Layout};
+use interface::Layout;
 use random::RandomMachine;
 use side::Side;
 
@@ -38,7 +39,7 @@ pub struct Step {
     pub parameter: (usize, i32),
     /// Command to the envelope that is stepped beside the controller: lift, lower, mA, and flags.
     pub command: [i32; 3],
-    /// Values of the known inputs, in their order; [`ABSENT`] for a signal without a value.
+    /// Values of the known inputs, in their order; [`replay_side::ABSENT`] for a signal without a value.
     pub inputs: Vec<i32>,
 }
 
@@ -104,14 +105,17 @@ pub fn recorded(earlier: &mut dyn Side, present: &mut dyn Side) -> Result<Replay
     let mut pair = Pair::new(layout, earlier, present);
     let mut event = Event::PowerUp;
     for record in trace::recorded()? {
+        let words = replay_side::words(&Inputs::from_bytes(&record));
+        // What only the earlier side has was not recorded.
+        let value = |name: &String| {
+            let place = replay_side::INPUTS.iter().position(|known| known == name);
+            place.map_or(0, |place| words[place])
+        };
         let step = Step {
             event,
             parameter: (0, 0),
             command: [0; 3],
-            inputs: names
-                .iter()
-                .map(|name| recorded_value(name, &record))
-                .collect(),
+            inputs: names.iter().map(value).collect(),
         };
         event = Event::None;
         pair.step(&[step], |_, _, differs| {
@@ -119,23 +123,6 @@ pub fn recorded(earlier: &mut dyn Side, present: &mut dyn Side) -> Result<Replay
         })?;
     }
     Ok(pair.replay)
-}
-
-/// The value of an input in a record of the controller's link.
-fn recorded_value(name: &str, record: &[u8; hitch_quantities::signals::INPUT_BYTES]) -> i32 {
-    let (words, _) = record.as_chunks::<4>();
-    let first = i32::from_le_bytes(words[0]);
-    let bit = |bit: usize| (first >> bit) & 1;
-    if let Some(index) = interface::RECORDED.iter().position(|known| *known == name) {
-        return match bit(index) {
-            1 => i32::from_le_bytes(words[1 + index]),
-            _ => ABSENT,
-        };
-    }
-    let switch = interface::RECORDED_BITS
-        .iter()
-        .find(|(known, _)| *known == name);
-    switch.map_or(0, |(_, place)| bit(*place))
 }
 
 /// Two sides in lock step.
@@ -211,14 +198,6 @@ impl Reached {
     pub fn codes(bits: u64) -> Vec<u32> {
         (1..64).filter(|code| bits >> code & 1 == 1).collect()
     }
-}
-
-/// Checks that both sides can be compared at all.
-///
-/// # Errors
-/// If they have no output in common.
-pub fn layout(earlier: &Interface, present: &Interface) -> Result<Layout> {
-    Layout::of(earlier, present)
 }
 
 #[cfg(test)]

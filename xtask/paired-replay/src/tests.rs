@@ -1,5 +1,6 @@
 //! The comparator finds an injected difference, and nothing else.
 
+use super::interface::Interface;
 use super::side::{Present, Side};
 use super::*;
 
