@@ -5,7 +5,7 @@
 
 use std::ffi::OsString;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
 use arm_build::{process, workspace};
@@ -209,7 +209,7 @@ impl Part {
         };
         digest.update(values.as_bytes());
         for path in self.decides {
-            for file in files(&workspace::root().join(path))? {
+            for file in workspace::files(&workspace::root().join(path))? {
                 let name = file.strip_prefix(workspace::root()).unwrap_or(&file);
                 digest.update(name.as_os_str().as_encoded_bytes());
                 digest.update(&fs::read(&file).with_context(|| file.display().to_string())?);
@@ -274,19 +274,6 @@ impl Part {
         );
         Ok(())
     }
-}
-
-/// The file itself, or the files in the folder, in a fixed order.
-fn files(path: &Path) -> Result<Vec<PathBuf>> {
-    if !path.is_dir() {
-        return Ok(vec![path.to_owned()]);
-    }
-    let entries = fs::read_dir(path).with_context(|| path.display().to_string())?;
-    let mut files = entries
-        .map(|entry| Ok(entry?.path()))
-        .collect::<Result<Vec<_>>>()?;
-    files.sort();
-    Ok(files)
 }
 
 /// Finds cargo-mutants, or installs it in the target folder.

@@ -10,10 +10,10 @@ use std::env;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, Stdio};
+use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
-use arm_build::{process, workspace};
+use arm_build::{process, programs, workspace};
 use llvm_profparser::{CoverageMapping, merge_profiles};
 
 use crate::branches::{self, Place, Taken};
@@ -74,26 +74,16 @@ fn judge_branches(branches: &BTreeMap<Place, Taken>) -> Result<()> {
 /// Compiles a test with counters; returns the program. Counters of build scripts are written to `folder`.
 fn build(tests: &[&str], folder: &Path) -> Result<PathBuf> {
     let mut command = process::command(workspace::cargo(), &["test", "--locked", "--no-run"]);
-    command.args(tests).arg("--message-format=json");
+    command.args(tests);
     // Only the workspace's crates have counters, so their dependencies are not compiled again.
     let this = env::current_exe().context("where is this program?")?;
     command
         .env("RUSTC_WORKSPACE_WRAPPER", this)
         .env("LLVM_PROFILE_FILE", folder.join("build.profraw"))
         .env(COUNTING, "1");
-    process::announce(&command);
-    let output = command.stderr(Stdio::inherit()).output()?;
-    ensure!(
-        output.status.success(),
-        "the tests don't compile; see above"
-    );
-    let messages = String::from_utf8_lossy(&output.stdout);
     // Of all artefacts reported by cargo only the test is a program.
-    let program = messages.lines().find_map(|line| {
-        let (_, rest) = line.split_once("\"executable\":\"")?;
-        Some(PathBuf::from(rest.split_once('"')?.0))
-    });
-    program.context("cargo names no test program")
+    let program = programs::build(&mut command)?.into_iter().next();
+    Ok(program.context("cargo names no test program")?.path)
 }
 
 /// If cargo has started this program in place of the compiler: compiles with counters.
@@ -167,12 +157,7 @@ fn judge(regions: &[Region]) -> Result<()> {
     );
     let mut sources = 0;
     for covered in COVERED {
-        let path = workspace::root().join(covered);
-        sources += if path.is_dir() {
-            fs::read_dir(path)?.count()
-        } else {
-            1
-        };
+        sources += workspace::files(&workspace::root().join(covered))?.len();
     }
     if files.len() != sources {
         bail!(
