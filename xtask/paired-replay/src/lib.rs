@@ -5,9 +5,9 @@
 //!                                       +--> side of the present one    --+
 //! ```
 //!
-//! A side is a process that was built from the sources of its commit (`xtask/replay-side`), or the present code in this
-//! process (`side::Present`). A round steps [`MACHINES`] independent machines, so that the hitch of each can follow the
-//! answer of the earlier side at little cost. A machine whose answers differ is powered up again in both sides: the consequences
+//! A side is a process that was built from the sources of its commit (`xtask/replay-side`); in the tests also the present
+//! code in their process. A round steps [`MACHINES`] independent machines, so that the hitch of each can follow the answer
+//! of the earlier side at little cost. A machine whose answers differ is powered up again in both sides: the consequences
 //! of a difference are not listed.
 
 pub mod differences;
