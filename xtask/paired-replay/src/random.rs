@@ -5,7 +5,7 @@ use replay_side::{ABSENT, Event};
 
 use super::Step;
 use super::hitch::Hitch;
-use super::interface::{Layout, Parameter, Places};
+use super::interface::{Layout, Parameter};
 
 /// How a signal behaves: name, value of a healthy machine, range of healthy values, and whether it adds to what the
 /// hitch measures.
@@ -149,7 +149,6 @@ impl Signal {
 pub struct RandomMachine {
     signals: Vec<Signal>,
     parameters: Vec<Parameter>,
-    places: Places,
     /// Places of what the hitch measures: angle, second angle, currents.
     angles: [Option<usize>; 2],
     currents: [Option<usize>; 2],
@@ -175,7 +174,6 @@ impl RandomMachine {
         Self {
             signals: signals.collect(),
             parameters: layout.parameters.clone(),
-            places: layout.places.clone(),
             angles: [place("rocker_angle"), place("second_angle")],
             currents: [place("lift_current"), place("lower_current")],
             hitch: Hitch::at(90_000.0),
@@ -265,12 +263,11 @@ impl RandomMachine {
     }
 
     /// Takes the answer of the earlier side; if the other one `differs`, the machine is powered up.
-    pub fn follow(&mut self, answer: &[i32], differs: bool) {
-        let at = |place: Option<usize>| place.map_or(0, |place| answer[place]);
-        let places = &self.places;
-        self.answered = [at(places.lift_current), at(places.lower_current)];
+    pub fn follow(&mut self, layout: &Layout, answer: &[i32], differs: bool) {
+        let both = |names: [&str; 2]| names.map(|name| layout.output(answer, name));
+        self.answered = both(["lift_current", "lower_current"]);
         let [lift, lower] = if self.follows_envelope {
-            [at(places.envelope_lift), at(places.envelope_lower)]
+            both(["envelope.lift_current", "envelope.lower_current"])
         } else {
             self.answered
         };
