@@ -43,9 +43,9 @@ pub fn run() -> Result<()> {
     let profile = merge_profiles(&[counters]).context("can't read the counters")?;
     let objects = [test];
     let mapping = CoverageMapping::new(&objects, &profile, true)?;
-    let branches = branches::branches(&mapping, &profile, &workspace::root(), &COVERED)?;
-    judge(&regions(&mapping)?)?;
-    judge_branches(&branches)
+    let counted = branches::counted(&mapping, &profile, &workspace::root(), &COVERED)?;
+    judge(&counted.pieces)?;
+    judge_branches(&counted.branches)
 }
 
 /// Lists the outcomes that no test has. They are an error.
@@ -102,56 +102,22 @@ pub fn compile() -> Option<ExitCode> {
     })
 }
 
-/// A region of code without branches, by its file relative to the workspace's root, with its count.
-struct Region {
-    file: PathBuf,
-    first_line: usize,
-    first_column: usize,
-    last_line: usize,
-    hits: usize,
-}
-
-/// The regions of the covered files.
-fn regions(mapping: &CoverageMapping<'_>) -> Result<Vec<Region>> {
-    let report = mapping.generate_report()?;
-    let root = workspace::root();
-    let mut regions = Vec::new();
-    for (path, result) in &report.files {
-        let file = path.strip_prefix(&root).unwrap_or(path);
-        if COVERED.iter().any(|covered| file.starts_with(covered)) {
-            regions.extend(result.hits.iter().map(|(place, hits)| Region {
-                file: file.to_owned(),
-                first_line: place.line_start,
-                first_column: place.column_start,
-                last_line: place.line_end,
-                hits: *hits,
-            }));
+/// Lists the pieces of code that no test reaches. They are an error.
+fn judge(pieces: &BTreeMap<Place, i64>) -> Result<()> {
+    let mut missed = 0;
+    let (mut files, mut lines) = (BTreeSet::new(), BTreeSet::new());
+    for ((file, [line, column, last, _]), hits) in pieces {
+        if *hits == 0 {
+            println!("{}:{line}:{column} is never reached", file.display());
+            missed += 1;
         }
+        files.insert(file);
+        lines.extend((*line..=*last).map(|line| (file, line)));
     }
-    Ok(regions)
-}
-
-fn judge(regions: &[Region]) -> Result<()> {
-    let missed: Vec<&Region> = regions.iter().filter(|region| region.hits == 0).collect();
-    for region in &missed {
-        println!(
-            "{}:{}:{} is never reached",
-            region.file.display(),
-            region.first_line,
-            region.first_column
-        );
-    }
-    let files: BTreeSet<&Path> = regions.iter().map(|region| region.file.as_path()).collect();
-    let lines: BTreeSet<(&Path, usize)> = regions
-        .iter()
-        .flat_map(|region| {
-            (region.first_line..=region.last_line).map(|line| (region.file.as_path(), line))
-        })
-        .collect();
     println!(
         "the safety envelope: {} of {} pieces of code on {} lines of {} files are reached by its tests",
-        regions.len() - missed.len(),
-        regions.len(),
+        pieces.len() - missed,
+        pieces.len(),
         lines.len(),
         files.len()
     );
@@ -167,7 +133,7 @@ fn judge(regions: &[Region]) -> Result<()> {
         );
     }
     ensure!(
-        missed.is_empty(),
+        missed == 0,
         "the envelope's tests leave code out; see above"
     );
     Ok(())
