@@ -110,7 +110,7 @@ impl Decoder {
         let arch = detail.arch_detail();
         let arm = arch.arm().context("no details")?;
         let parts = Parts {
-            id: instruction.id().0,
+            kind: ArmInsn::from(instruction.id().0),
             arm,
             operands: arm.operands().collect(),
         };
@@ -151,16 +151,12 @@ fn register_of(operand: &ArmOperand) -> Option<RegId> {
 }
 
 struct Parts<'a> {
-    id: u32,
+    kind: ArmInsn,
     arm: &'a ArmInsnDetail<'a>,
     operands: Vec<ArmOperand>,
 }
 
 impl Parts<'_> {
-    fn is(&self, instructions: &[ArmInsn]) -> bool {
-        instructions.iter().any(|known| *known as u32 == self.id)
-    }
-
     fn register(&self, index: usize) -> Option<RegId> {
         register_of(self.operands.get(index)?)
     }
@@ -180,7 +176,7 @@ impl Parts<'_> {
 
     fn condition(&self) -> Option<Condition> {
         use ArmInsn::{ARM_INS_CBNZ, ARM_INS_CBZ};
-        if self.is(&[ARM_INS_CBZ, ARM_INS_CBNZ]) {
+        if matches!(self.kind, ARM_INS_CBZ | ARM_INS_CBNZ) {
             return Some(Condition::Register);
         }
         match self.arm.cc() {
@@ -198,7 +194,11 @@ impl Parts<'_> {
 
     fn sets_flags(&self) -> bool {
         use ArmInsn::{ARM_INS_CMN, ARM_INS_CMP, ARM_INS_TEQ, ARM_INS_TST};
-        self.arm.update_flags() || self.is(&[ARM_INS_CMP, ARM_INS_CMN, ARM_INS_TST, ARM_INS_TEQ])
+        let compares = matches!(
+            self.kind,
+            ARM_INS_CMP | ARM_INS_CMN | ARM_INS_TST | ARM_INS_TEQ
+        );
+        compares || self.arm.update_flags()
     }
 
     /// How much memory operand `[sp, #n]!` or `[sp], #n` moves the stack pointer.
@@ -238,15 +238,10 @@ impl Parts<'_> {
             ARM_INS_STM, ARM_INS_STMDB, ARM_INS_SUB, ARM_INS_SUBW, ARM_INS_VLDMDB, ARM_INS_VLDMIA,
             ARM_INS_VPOP, ARM_INS_VPUSH, ARM_INS_VSTMDB, ARM_INS_VSTMIA,
         };
-        const SAVING: [ArmInsn; 2] = [ARM_INS_STMDB, ARM_INS_VSTMDB];
-        const RESTORING: [ArmInsn; 2] = [ARM_INS_LDM, ARM_INS_VLDMIA];
-        const UPSIDE_DOWN: [ArmInsn; 4] =
-            [ARM_INS_LDMDB, ARM_INS_STM, ARM_INS_VLDMDB, ARM_INS_VSTMIA];
-        if self.is(&[ARM_INS_PUSH, ARM_INS_VPUSH]) {
-            return self.saved_bytes();
-        }
-        if self.is(&[ARM_INS_POP, ARM_INS_VPOP]) {
-            return Ok(-self.saved_bytes()?);
+        match self.kind {
+            ARM_INS_PUSH | ARM_INS_VPUSH => return self.saved_bytes(),
+            ARM_INS_POP | ARM_INS_VPOP => return Ok(-self.saved_bytes()?),
+            _ => {}
         }
         if let Some(moved) = self.written_back() {
             return Ok(-moved);
@@ -255,28 +250,28 @@ impl Parts<'_> {
             return Ok(0);
         }
         let by_itself = self.operands.len() == 2 || self.register(1) == Some(STACK_POINTER);
-        let is_block = self.is(&SAVING) || self.is(&RESTORING) || self.is(&UPSIDE_DOWN);
-        match self.immediate() {
-            Some(bytes) if by_itself && self.is(&[ARM_INS_SUB, ARM_INS_SUBW]) => Ok(bytes),
-            Some(bytes) if by_itself && self.is(&[ARM_INS_ADD, ARM_INS_ADDW]) => Ok(-bytes),
-            _ if !is_block => bail!("moves the stack pointer in a way that can't be followed"),
-            _ if !self.arm.writeback() => Ok(0),
-            _ if self.is(&SAVING) => self.saved_bytes(),
-            _ if self.is(&RESTORING) => Ok(-self.saved_bytes()?),
-            _ => bail!("uses the stack upside down"),
+        let moves = self.arm.writeback();
+        match (self.kind, self.immediate()) {
+            (ARM_INS_SUB | ARM_INS_SUBW, Some(bytes)) if by_itself => Ok(bytes),
+            (ARM_INS_ADD | ARM_INS_ADDW, Some(bytes)) if by_itself => Ok(-bytes),
+            (ARM_INS_STMDB | ARM_INS_VSTMDB, _) if moves => self.saved_bytes(),
+            (ARM_INS_LDM | ARM_INS_VLDMIA, _) if moves => Ok(-self.saved_bytes()?),
+            (ARM_INS_STM | ARM_INS_VSTMIA | ARM_INS_LDMDB | ARM_INS_VLDMDB, _) if moves => {
+                bail!("uses the stack upside down")
+            }
+            (ARM_INS_STMDB | ARM_INS_VSTMDB | ARM_INS_LDM | ARM_INS_VLDMIA, _)
+            | (ARM_INS_STM | ARM_INS_VSTMIA | ARM_INS_LDMDB | ARM_INS_VLDMDB, _) => Ok(0),
+            _ => bail!("moves the stack pointer in a way that can't be followed"),
         }
     }
 
     /// Comparisons and stores have no result among their operands.
     fn is_read_only(&self) -> bool {
         use ArmInsn::{ARM_INS_CMN, ARM_INS_CMP, ARM_INS_MSR, ARM_INS_STR, ARM_INS_TST};
-        self.is(&[
-            ARM_INS_CMP,
-            ARM_INS_CMN,
-            ARM_INS_TST,
-            ARM_INS_STR,
-            ARM_INS_MSR,
-        ])
+        matches!(
+            self.kind,
+            ARM_INS_CMP | ARM_INS_CMN | ARM_INS_TST | ARM_INS_STR | ARM_INS_MSR
+        )
     }
 
     fn flow(&self) -> Result<Flow> {
@@ -288,40 +283,25 @@ impl Parts<'_> {
             let target = self.immediate().context("a branch without a target")?;
             Ok::<_, anyhow::Error>(target.cast_unsigned())
         };
-        if self.is(&[ARM_INS_B, ARM_INS_CBZ, ARM_INS_CBNZ]) {
-            return Ok(Flow::Jump(target()?));
-        }
-        if self.is(&[ARM_INS_BL]) {
-            return Ok(Flow::Call(target()?));
-        }
-        if self.is(&[ARM_INS_BLX]) {
-            return Ok(Flow::CallByAddress);
-        }
-        if self.is(&[ARM_INS_BX]) {
-            return Ok(if self.register(0) == Some(LINK) {
-                Flow::Return
-            } else {
-                Flow::JumpByAddress
-            });
-        }
-        if self.is(&[ARM_INS_TBB, ARM_INS_TBH]) {
-            let entry_bytes = if self.is(&[ARM_INS_TBB]) { 1 } else { 2 };
-            return Ok(Flow::Table { entry_bytes });
-        }
-        if self.is(&[ARM_INS_UDF]) {
-            return Ok(Flow::Nowhere);
-        }
-        if !self.registers().any(|register| register == PROGRAM_COUNTER) {
-            return Ok(Flow::On);
-        }
-        let restores = self.is(&[ARM_INS_POP]) || self.written_back().is_some();
-        if restores || (self.is(&[ARM_INS_LDM]) && self.register(0) == Some(STACK_POINTER)) {
-            return Ok(Flow::Return);
-        }
-        let writes = self.register(0) == Some(PROGRAM_COUNTER) || self.is(&[ARM_INS_LDM]);
-        ensure!(!writes, "goes where can't be told");
-        // What is left computes an address from it.
-        Ok(Flow::On)
+        let first = self.register(0);
+        Ok(match self.kind {
+            ARM_INS_B | ARM_INS_CBZ | ARM_INS_CBNZ => Flow::Jump(target()?),
+            ARM_INS_BL => Flow::Call(target()?),
+            ARM_INS_BLX => Flow::CallByAddress,
+            ARM_INS_BX if first == Some(LINK) => Flow::Return,
+            ARM_INS_BX => Flow::JumpByAddress,
+            ARM_INS_TBB => Flow::Table { entry_bytes: 1 },
+            ARM_INS_TBH => Flow::Table { entry_bytes: 2 },
+            ARM_INS_UDF => Flow::Nowhere,
+            _ if !self.registers().any(|register| register == PROGRAM_COUNTER) => Flow::On,
+            ARM_INS_POP => Flow::Return,
+            ARM_INS_LDM if first == Some(STACK_POINTER) => Flow::Return,
+            _ if self.written_back().is_some() => Flow::Return,
+            ARM_INS_LDM => bail!("goes where can't be told"),
+            _ if first == Some(PROGRAM_COUNTER) => bail!("goes where can't be told"),
+            // What is left computes an address from it.
+            _ => Flow::On,
+        })
     }
 
     /// `mov r7, sp` and `add r7, sp, #n`.
@@ -329,7 +309,7 @@ impl Parts<'_> {
         use ArmInsn::{ARM_INS_ADD, ARM_INS_ADDW, ARM_INS_MOV};
         let from_stack = self.register(0) == Some(FRAME_POINTER)
             && self.register(1) == Some(STACK_POINTER)
-            && self.is(&[ARM_INS_ADD, ARM_INS_ADDW, ARM_INS_MOV]);
+            && matches!(self.kind, ARM_INS_ADD | ARM_INS_ADDW | ARM_INS_MOV);
         from_stack.then(|| self.immediate().unwrap_or(0))
     }
 }

@@ -99,8 +99,8 @@ impl Battery {
             .env("CARGO_PROFILE_BENCH_CODEGEN_UNITS", "16");
         // The last program of that name.
         let name = name.replace('-', "_");
-        let built = programs::build(&mut command)?.into_iter();
-        let found = built.filter(|program| program.name == name).next_back();
+        let mut built = programs::build(&mut command)?.into_iter();
+        let found = built.rfind(|program| program.name == name);
         Ok(found.context("cargo names no benchmark")?.path)
     }
 
