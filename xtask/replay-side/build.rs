@@ -63,8 +63,8 @@ fn optional(kind: &str) -> Option<&str> {
 }
 
 fn inputs(signals: &str) -> String {
-    let mut names = Vec::new();
-    let mut structure = |structure: &str, inner: Option<&str>| {
+    let (mut names, mut values) = (Vec::new(), String::new());
+    let mut structure = |structure: &str, at: &str, inner: Option<&str>| {
         let mut body = String::new();
         for (name, kind) in fields(signals, structure) {
             if kind == "Switches" {
@@ -73,18 +73,22 @@ fn inputs(signals: &str) -> String {
             }
             let word = format!("words[{}]", names.len());
             names.push(name.clone());
-            let _ = match optional(&kind) {
-                Some(kind) => write!(body, "{name}: word::present({word}).map({kind}),"),
-                None => write!(body, "{name}: {word} != 0,"),
-            };
+            if let Some(kind) = optional(&kind) {
+                let _ = write!(body, "{name}: word::present({word}).map({kind}),");
+                let _ = write!(values, "{at}.{name}.map_or(word::ABSENT, |value| value.0),");
+            } else {
+                let _ = write!(body, "{name}: {word} != 0,");
+                let _ = write!(values, "i32::from({at}.{name}),");
+            }
         }
         format!("{structure} {{ {body} }}")
     };
-    let switches = structure("Switches", None);
-    let inputs = structure("Inputs", Some(&switches));
+    let switches = structure("Switches", "inputs.switches", None);
+    let inputs = structure("Inputs", "inputs", Some(&switches));
     format!(
         "/// Names of the inputs.\npub const INPUTS: [&str; {count}] = {names:?};\n\
-         pub(crate) fn inputs(words: &[i32; {count}]) -> Inputs {{ {inputs} }}\n",
+         pub(crate) fn inputs(words: &[i32; {count}]) -> Inputs {{ {inputs} }}\n\
+         /// The words of inputs.\npub fn words(inputs: &Inputs) -> [i32; {count}] {{ [{values}] }}\n",
         count = names.len()
     )
 }

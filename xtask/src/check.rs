@@ -6,7 +6,7 @@ use arm_build::toolchain::{ARM, Way};
 use arm_build::{process, setup, workspace};
 
 use crate::timings::Timings;
-use crate::{ablation, circles, documents, layers, scripts};
+use crate::{ablation, circles, documents, layers, scripts, sources};
 
 /// Runs all checks; the first that fails ends it.
 pub fn run(way: Option<Way>, timings: &mut Timings) -> Result<()> {
@@ -14,8 +14,9 @@ pub fn run(way: Option<Way>, timings: &mut Timings) -> Result<()> {
         |arguments: &[&str]| process::run(&mut process::command(workspace::cargo(), arguments));
     timings.measured("format, folders, documents, types of the scripts", || {
         cargo(&["fmt", "--all", "--check"])?;
-        layers::check()?;
-        circles::check()?;
+        let crates = sources::crates()?;
+        layers::check(&crates)?;
+        circles::check(&crates)?;
         documents::check()?;
         ablation::check()?;
         scripts::check()

@@ -4,19 +4,13 @@
 //! a front page may name everything below it. Tests are exempt.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
-use arm_build::workspace;
+use anyhow::{Result, ensure};
 
-use crate::sources::{Names, Source, below, module_of};
+use crate::sources::{Crate, Names, below};
 
 /// Number of re-exports in a row that are followed; more than the workspace has.
 const RE_EXPORTS: usize = 8;
-
-/// The folders that hold crates, from the workspace's root.
-const FOLDERS: [&str; 5] = ["firmware", "host-tests", "model", "workbench", "xtask"];
 
 /// What a file takes from another.
 #[derive(Clone, Copy)]
@@ -26,64 +20,27 @@ struct Use<'a> {
     name: &'a str,
 }
 
-/// The files of a crate by their modules.
-struct Sources(BTreeMap<Names, Source>);
-
 /// Rejects circles of files.
-pub fn check() -> Result<()> {
-    let mut wrong = Vec::new();
-    let mut files = 0;
-    for root in roots()? {
-        let sources = Sources::read(&root)?;
-        files += sources.0.len();
-        wrong.extend(sources.circles().iter().map(|circle| {
-            let root = root.strip_prefix(workspace::root()).unwrap_or(&root);
-            format!("{}: {}", root.display(), written(circle))
-        }));
-    }
+pub fn check(crates: &[Crate]) -> Result<()> {
+    let wrong = crates.iter().flat_map(|one| {
+        let circles = one.circles();
+        let lines = circles
+            .iter()
+            .map(|circle| format!("{}: {}", one.folder, written(circle)));
+        lines.collect::<Vec<_>>()
+    });
+    let wrong: Vec<String> = wrong.collect();
     ensure!(
         wrong.is_empty(),
         "circles of files; move what ties them to a file below:\n{}",
         wrong.join("\n")
     );
+    let files: usize = crates.iter().map(|one| one.files.len()).sum();
     println!("no circle among {files} files of sources");
     Ok(())
 }
 
-/// The folder of each crate's sources; a program of several files in `bin` is a crate of its own.
-fn roots() -> Result<Vec<PathBuf>> {
-    let mut roots = BTreeSet::new();
-    for folder in FOLDERS {
-        for file in workspace::files(&workspace::root().join(folder))? {
-            let is_root = file
-                .file_name()
-                .is_some_and(|name| name == "lib.rs" || name == "main.rs");
-            let sources = |at: &Path| {
-                at.ends_with("src") || at.parent().is_some_and(|up| up.ends_with("src/bin"))
-            };
-            if let Some(parent) = file.parent().filter(|at| is_root && sources(at)) {
-                roots.insert(parent.to_path_buf());
-            }
-        }
-    }
-    Ok(roots.into_iter().collect())
-}
-
-impl Sources {
-    fn read(root: &Path) -> Result<Self> {
-        let mut sources = BTreeMap::new();
-        for file in workspace::files(root)? {
-            let place = file.strip_prefix(root)?;
-            if file.extension().is_none_or(|end| end != "rs") || place.starts_with("bin") {
-                continue;
-            }
-            let text = fs::read_to_string(&file)?;
-            let parsed = Source::parsed(&text).with_context(|| file.display().to_string())?;
-            sources.insert(module_of(place), parsed);
-        }
-        Ok(Self(sources))
-    }
-
+impl Crate {
     /// The module whose file defines what a path names, as seen from a module; `None` outside the crate.
     fn definer(&self, from: &Names, path: &[String], depth: usize) -> Option<Names> {
         let (first, mut rest) = path.split_first()?;
@@ -95,10 +52,10 @@ impl Sources {
                 at.pop();
             }
             name => {
-                if self.0.contains_key(&below(from, name)) {
+                if self.files.contains_key(&below(from, name)) {
                     at.push(name.to_owned());
                 } else {
-                    let start = self.0.get(from)?.imported.get(name)?;
+                    let start = self.files.get(from)?.imported.get(name)?;
                     return self.definer(from, &[start, rest].concat(), depth.checked_sub(1)?);
                 }
             }
@@ -107,10 +64,10 @@ impl Sources {
             let next = below(&at, name);
             if name == "super" {
                 at.pop();
-            } else if self.0.contains_key(&next) {
+            } else if self.files.contains_key(&next) {
                 at = next;
             } else {
-                let source = self.0.get(&at)?;
+                let source = self.files.get(&at)?;
                 if source.defined.contains(name) {
                     return Some(at);
                 }
@@ -133,14 +90,14 @@ impl Sources {
     /// For each file on a circle the shortest way back to it; each set of files once.
     fn circles(&self) -> Vec<Vec<Use<'_>>> {
         let uses: BTreeMap<&Names, Vec<Use<'_>>> = self
-            .0
+            .files
             .iter()
             .map(|(module, source)| {
                 let used = source.used.iter();
                 let files = used.filter_map(|path| {
                     let file = self.definer(module, path, RE_EXPORTS)?;
                     let (file, _) = self
-                        .0
+                        .files
                         .get_key_value(&file)
                         .filter(|(file, _)| *file != module)?;
                     Some(Use {
@@ -153,7 +110,10 @@ impl Sources {
             })
             .collect();
         let mut seen = BTreeSet::new();
-        let ways = self.0.keys().filter_map(|module| way_back(module, &uses));
+        let ways = self
+            .files
+            .keys()
+            .filter_map(|module| way_back(module, &uses));
         ways.filter(|circle| {
             seen.insert(circle.iter().map(|used| used.by).collect::<BTreeSet<_>>())
         })
@@ -204,13 +164,19 @@ fn written(circle: &[Use<'_>]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::sources::{Source, crates, module_of};
 
     fn circles(files: &[(&str, &str)]) -> Vec<String> {
         let parsed = |&(place, text): &(&str, &str)| {
             (module_of(Path::new(place)), Source::parsed(text).unwrap())
         };
-        let sources = Sources(files.iter().map(parsed).collect());
+        let sources = Crate {
+            folder: String::new(),
+            files: files.iter().map(parsed).collect(),
+        };
         let files = |circle: &Vec<Use<'_>>| {
             circle
                 .iter()
@@ -275,6 +241,6 @@ mod tests {
 
     #[test]
     fn no_crate_has_a_circle_of_files() {
-        check().unwrap();
+        check(&crates().unwrap()).unwrap();
     }
 }

@@ -6,21 +6,13 @@ use std::fs;
 use anyhow::{Context, Result, ensure};
 use arm_build::workspace;
 
+use crate::sources::FOLDERS;
+
 /// The list of requirements, from the workspace's root.
 const REQUIREMENTS: &str = "docs/requirements.md";
 
 /// The page with the table that says where things are, from the workspace's root.
 const ARCHITECTURE: &str = "docs/ARCHITECTURE.md";
-
-/// Folders with sources and documents, from the workspace's root.
-const FOLDERS: [&str; 6] = [
-    "docs",
-    "firmware",
-    "host-tests",
-    "model",
-    "workbench",
-    "xtask",
-];
 
 /// Beginning of a requirement's id. Assembled, so that this file names none.
 const ID: &str = concat!("RE", "Q-");
@@ -29,7 +21,7 @@ const ID: &str = concat!("RE", "Q-");
 pub fn check() -> Result<()> {
     let root = workspace::root();
     let mut texts = BTreeMap::new();
-    for folder in FOLDERS {
+    for folder in FOLDERS.into_iter().chain(["docs"]) {
         for path in workspace::files(&root.join(folder))? {
             let end = path.extension().and_then(|end| end.to_str());
             // Fixtures of faulty files may hold any bytes.

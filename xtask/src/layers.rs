@@ -5,13 +5,10 @@
 //! Tests are exempt.
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use arm_build::workspace;
 
-use crate::sources::{Source, module_of};
+use crate::sources::{Crate, Names, Source};
 
 /// The folders of a crate in their order.
 struct Layers {
@@ -167,23 +164,15 @@ const CRATES: [Layers; 12] = [
 ];
 
 /// Rejects imports of higher layers, and modules without an entry.
-pub fn check() -> Result<()> {
+pub fn check(crates: &[Crate]) -> Result<()> {
     let mut wrong = Vec::new();
     for layers in &CRATES {
-        let root = workspace::root().join(layers.sources);
-        let files = workspace::files(&root)?;
-        for file in files
-            .into_iter()
-            .filter(|file| file.extension().is_some_and(|end| end == "rs"))
-        {
-            let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
-            let place = file.strip_prefix(&root)?;
-            wrong.extend(
-                layers
-                    .judge(place, &text)
-                    .into_iter()
-                    .map(|what| format!("{}/{}: {what}", layers.sources, place.display())),
-            );
+        let folder = layers.sources;
+        let sources = crates.iter().find(|one| one.folder == folder);
+        let sources = sources.with_context(|| format!("there are no sources in {folder}"))?;
+        for (module, source) in &sources.files {
+            let faults = layers.judge(module, source).into_iter();
+            wrong.extend(faults.map(|what| format!("{folder}, {}: {what}", module.join("::"))));
         }
     }
     ensure!(
@@ -201,9 +190,8 @@ impl Layers {
         self.order.iter().position(|layer| layer.contains(&module))
     }
 
-    /// Faults of a file at this path below the sources.
-    fn judge(&self, place: &Path, text: &str) -> Vec<String> {
-        let module = module_of(place);
+    /// Faults of the file of a module.
+    fn judge(&self, module: &Names, source: &Source) -> Vec<String> {
         // The root of the crate declares all of them.
         let Some(own) = module.first() else {
             return Vec::new();
@@ -213,12 +201,8 @@ impl Layers {
                 "`{own}` has no place in the order of xtask/src/layers.rs"
             )];
         };
-        let source = match Source::parsed(text) {
-            Ok(source) => source,
-            Err(error) => return vec![error.to_string()],
-        };
         let wrong = source.paths().filter_map(|path| {
-            let used = top(&module, path)?;
+            let used = top(module, path)?;
             let path = path.join("::");
             match self.height(&used) {
                 Some(other) if other <= height => None,
@@ -244,7 +228,13 @@ fn top(module: &[String], path: &[String]) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use arm_build::workspace;
+
     use super::*;
+    use crate::sources::{crates, module_of};
 
     const LAYERS: Layers = Layers {
         sources: "",
@@ -252,7 +242,8 @@ mod tests {
     };
 
     fn wrong(place: &str, text: &str) -> usize {
-        LAYERS.judge(Path::new(place), text).len()
+        let source = Source::parsed(text).unwrap();
+        LAYERS.judge(&module_of(Path::new(place)), &source).len()
     }
 
     #[test]
@@ -308,7 +299,7 @@ mod tests {
 
     #[test]
     fn the_crates_keep_their_order() {
-        check().unwrap();
+        check(&crates().unwrap()).unwrap();
     }
 
     #[test]

@@ -12,7 +12,7 @@ mod sources;
 mod test;
 mod timings;
 
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, bail};
 use arm_build::toolchain::Way;
@@ -98,7 +98,7 @@ fn run(arguments: &[String]) -> Result<()> {
             tests.run("", &mut timings)?;
         }
         "arm" | "sizes" | "stack" | "coverage" | "a2l" => build_firmware_tool(task, way)?,
-        "try-page" => run_package("try-page", &[])?,
+        "try-page" => process::run(&mut package("try-page"))?,
         "mutants" => mutants::run(options.again)?,
         "setup" => setup::run(way)?,
         "help" | "--help" | "-h" => println!("{USAGE}"),
@@ -140,15 +140,7 @@ impl Options {
 
 /// Builds and runs the paired replay of two commits; its exit code is that of this program.
 fn replay(options: &[String]) -> Result<()> {
-    let cargo_options = [
-        "run",
-        "--quiet",
-        "--locked",
-        "--package",
-        "paired-replay",
-        "--",
-    ];
-    let mut command = process::command(workspace::cargo(), &cargo_options);
+    let mut command = package("paired-replay");
     command
         .arg("--folder")
         .arg(workspace::target().join("replay"))
@@ -161,11 +153,11 @@ fn replay(options: &[String]) -> Result<()> {
 /// Builds `firmware-tools`, and runs a task of it.
 fn build_firmware_tool(task: &str, way: Option<Way>) -> Result<()> {
     let arguments: Vec<&str> = std::iter::once(task).chain(way.map(Way::name)).collect();
-    run_package("firmware-tools", &arguments)
+    process::run(package("firmware-tools").args(arguments))
 }
 
-/// Builds a package with a program, and runs it.
-fn run_package(package: &str, arguments: &[&str]) -> Result<()> {
-    let options = ["run", "--quiet", "--locked", "--package", package, "--"];
-    process::run(process::command(workspace::cargo(), &options).args(arguments))
+/// Builds and runs the program of a package; its arguments follow.
+fn package(name: &str) -> Command {
+    let options = ["run", "--quiet", "--locked", "--package", name, "--"];
+    process::command(workspace::cargo(), &options)
 }

@@ -3,6 +3,7 @@
 //! This takes minutes. `firmware/mutants.txt` therefore records the tested state of each part; after a change of the
 //! part or of its tests, the mutation test is repeated.
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,14 +19,12 @@ use hitch_quantities::calibration::design_parameters::{
 #[derive(Debug)]
 struct Part {
     name: &'static str,
-    /// The mutated files, relative to the workspace's root; a star stands for any name.
+    /// The mutated files, or folders of them, relative to the workspace's root.
     changed: &'static [&'static str],
     /// Other files that affect the result, including its tests.
     decides: &'static [&'static str],
-    /// The mutated packages.
+    /// The mutated packages; the first one has the tests.
     packages: &'static [&'static str],
-    /// The package of the tests.
-    tested: &'static str,
     /// Its tests, as options of cargo.
     tests: &'static [&'static str],
     /// Excluded tests: random ones with long run times.
@@ -52,7 +51,6 @@ const PARTS: [Part; 4] = [
             "firmware/protocols/tests/storage",
         ],
         packages: &["hitch-protocols"],
-        tested: "hitch-protocols",
         tests: &["--test=storage"],
         skipped: None,
         looping: Some("Reader<'_, F>::entries"),
@@ -65,16 +63,12 @@ const PARTS: [Part; 4] = [
             "firmware/protocols/src/j1939/remote.rs",
         ],
         decides: &[
-            "firmware/protocols/src/j1939/address_book.rs",
             "firmware/protocols/src/j1939/hitch.rs",
-            "firmware/protocols/src/j1939/name.rs",
             "firmware/protocols/src/j1939/node.rs",
-            "firmware/protocols/src/j1939/remote.rs",
             "firmware/protocols/src/j1939/time.rs",
             "firmware/protocols/tests/j1939",
         ],
         packages: &["hitch-protocols"],
-        tested: "hitch-protocols",
         tests: &["--test=j1939"],
         skipped: None,
         looping: None,
@@ -88,14 +82,12 @@ const PARTS: [Part; 4] = [
             "firmware/quantities/src/fixed.rs",
             "firmware/control/src/estimation/motion_observer.rs",
             "firmware/control/src/motion/bands.rs",
-            "firmware/control/src/motion/position.rs",
             "firmware/quantities/src/units.rs",
             "firmware/control/src/valve/phase.rs",
             "firmware/quantities/src/piston.rs",
             "firmware/control/tests/position.rs",
         ],
         packages: &["hitch-control"],
-        tested: "hitch-control",
         tests: &["--lib", "--test=position"],
         skipped: None,
         looping: None,
@@ -103,23 +95,20 @@ const PARTS: [Part; 4] = [
     Part {
         name: SAFETY,
         changed: &[
-            "firmware/safety/src/*.rs",
+            "firmware/safety/src",
             "firmware/quantities/src/signals/trip.rs",
         ],
         decides: &[
-            "firmware/safety/src",
             "firmware/quantities/src/calibration/linkage.rs",
             "firmware/quantities/src/calibration/valve_table.rs",
             "firmware/quantities/src/piston.rs",
             "firmware/quantities/src/signals/fault.rs",
             "firmware/quantities/src/signals/coils.rs",
             "firmware/quantities/src/signals/mod.rs",
-            "firmware/quantities/src/signals/trip.rs",
             "firmware/quantities/src/units.rs",
             "firmware/safety/tests/envelope",
         ],
         packages: &["hitch-safety", "hitch-quantities"],
-        tested: "hitch-safety",
         tests: &["--test=envelope"],
         skipped: Some("any_inputs::"),
         looping: Some("Debounce::judge"),
@@ -209,12 +198,10 @@ impl Part {
             _ => String::new(),
         };
         digest.update(values.as_bytes());
-        for path in self.decides {
-            for file in files(&workspace::root().join(path))? {
-                let name = file.strip_prefix(workspace::root()).unwrap_or(&file);
-                digest.update(name.as_os_str().as_encoded_bytes());
-                digest.update(&fs::read(&file).with_context(|| file.display().to_string())?);
-            }
+        for file in files(&[self.changed, self.decides].concat())? {
+            digest.update(file.as_os_str().as_encoded_bytes());
+            let path = workspace::root().join(file);
+            digest.update(&fs::read(&path).with_context(|| path.display().to_string())?);
         }
         Ok(format!("{} code {:016x}", self.name, digest.finalize()))
     }
@@ -255,11 +242,15 @@ impl Part {
         command
             .args(["--jobs", JOBS, "--minimum-test-timeout", TEST_TIME])
             .args(self.packages.iter().flat_map(|name| ["--package", name]))
-            .args(["--test-package", self.tested])
-            .args(self.changed.iter().flat_map(|file| ["--file", file]))
+            .args(["--test-package", self.packages[0]])
             .args(self.tests.iter().map(|test| format!("--cargo-arg={test}")))
             .arg("--output")
             .arg(folder)
+            .args(
+                files(self.changed)?
+                    .iter()
+                    .map(|file| format!("--file={}", file.display())),
+            )
             // Each job builds a mutated copy of the sources in its own folder: in a shared one, cargo would use the
             // output of another copy.
             .env_remove("CARGO_TARGET_DIR");
@@ -277,16 +268,14 @@ impl Part {
     }
 }
 
-/// The file itself, or the files in the folder, in a fixed order.
-fn files(path: &Path) -> Result<Vec<PathBuf>> {
-    if !path.is_dir() {
-        return Ok(vec![path.to_owned()]);
+/// These files, and those in these folders, in order, relative to the workspace's root.
+fn files(paths: &[&str]) -> Result<BTreeSet<PathBuf>> {
+    let root = workspace::root();
+    let mut files = BTreeSet::new();
+    for path in paths {
+        let found = workspace::files(&root.join(path))?.into_iter();
+        files.extend(found.map(|file| file.strip_prefix(&root).unwrap_or(&file).to_owned()));
     }
-    let entries = fs::read_dir(path).with_context(|| path.display().to_string())?;
-    let mut files = entries
-        .map(|entry| Ok(entry?.path()))
-        .collect::<Result<Vec<_>>>()?;
-    files.sort();
     Ok(files)
 }
 

@@ -27,7 +27,8 @@ pub fn check() -> Result<()> {
     let is_present = |(name, text): (&str, &str)| {
         fs::read_to_string(folder.join(name)).is_ok_and(|present| present == text)
     };
-    setup::node()?;
+    setup::NODE.find()?;
+    setup::NPM.find()?;
     if !compiler.exists() || !PINNED.into_iter().all(is_present) {
         fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
         for (name, text) in PINNED {

@@ -1,14 +1,28 @@
-//! What the files of a crate define and use, by the paths in their sources.
+//! What the files of each crate define and use, by the paths in their sources.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
+use anyhow::{Context, Result};
+use arm_build::workspace;
 use syn::punctuated::Punctuated;
 use syn::visit::{self, Visit};
 use syn::{Attribute, Expr, ExprLit, Item, ItemMod, Lit, Meta, Token, UseTree, Visibility};
 
 /// The names of the modules that lead to one, from the root of its crate; or of a path.
 pub type Names = Vec<String>;
+
+/// The folders that hold crates, from the workspace's root.
+pub const FOLDERS: [&str; 5] = ["firmware", "host-tests", "model", "workbench", "xtask"];
+
+/// The files of a crate.
+pub struct Crate {
+    /// Folder of its sources, from the workspace's root.
+    pub folder: String,
+    /// The files by their modules.
+    pub files: BTreeMap<Names, Source>,
+}
 
 /// What a file defines and uses.
 #[derive(Default)]
@@ -20,6 +34,49 @@ pub struct Source {
     pub globs: Vec<Names>,
     /// Paths that the file uses.
     pub used: BTreeSet<Names>,
+}
+
+/// All crates of the workspace.
+///
+/// # Errors
+/// A file can't be read, or is no Rust.
+pub fn crates() -> Result<Vec<Crate>> {
+    roots()?.iter().map(|root| Crate::read(root)).collect()
+}
+
+/// The folder of each crate's sources; a program of several files in `bin` is a crate of its own.
+fn roots() -> Result<BTreeSet<PathBuf>> {
+    let mut roots = BTreeSet::new();
+    for folder in FOLDERS {
+        for file in workspace::files(&workspace::root().join(folder))? {
+            let is_root = file.ends_with("lib.rs") || file.ends_with("main.rs");
+            let sources = |at: &Path| {
+                at.ends_with("src") || at.parent().is_some_and(|up| up.ends_with("src/bin"))
+            };
+            if let Some(parent) = file.parent().filter(|at| is_root && sources(at)) {
+                roots.insert(parent.to_path_buf());
+            }
+        }
+    }
+    Ok(roots)
+}
+
+impl Crate {
+    fn read(root: &Path) -> Result<Self> {
+        let mut files = BTreeMap::new();
+        for file in workspace::files(root)? {
+            let place = file.strip_prefix(root)?;
+            if file.extension().is_none_or(|end| end != "rs") || place.starts_with("bin") {
+                continue;
+            }
+            let text = fs::read_to_string(&file)?;
+            let parsed = Source::parsed(&text).with_context(|| file.display().to_string())?;
+            files.insert(module_of(place), parsed);
+        }
+        let folder = root.strip_prefix(workspace::root()).unwrap_or(root);
+        let folder = folder.display().to_string();
+        Ok(Self { folder, files })
+    }
 }
 
 /// The module of a file below the root of its crate.

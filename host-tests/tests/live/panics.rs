@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 fn panics(image: &str) -> Vec<String> {
     let folder = std::env::var_os("HITCH_BOARD_IMAGES").expect("the folder with the images");
-    image_stack::panics(&PathBuf::from(folder).join(image)).unwrap()
+    let bound = image_stack::of(&PathBuf::from(folder).join(image)).unwrap();
+    bound.panics
 }
 
 #[test]

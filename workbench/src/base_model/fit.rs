@@ -8,7 +8,7 @@ use hitch_plant::Model;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::text::colour::by_sigma;
+use crate::text::colour::sigma;
 use crate::text::{Table, joined, wrapped};
 
 /// Result of `hitch model fit`.
@@ -189,8 +189,8 @@ impl fmt::Display for ShownBaseFit {
             "Campaign {}, model {}: error {} sigma before the fit, {} sigma after it",
             self.campaign,
             self.model,
-            by_sigma(&format!("{:.2}", self.error_before), self.error_before),
-            by_sigma(&format!("{:.2}", self.error_after), self.error_after)
+            sigma(self.error_before),
+            sigma(self.error_after)
         );
         writeln!(f, "{}\n", wrapped(&head))?;
         let (determined, unknown): (Vec<&ShownConstant>, Vec<&ShownConstant>) = self

@@ -19,7 +19,7 @@ use crate::output::progress::Progress;
 use crate::output::targets::{Outputs, campaign_files};
 use crate::output::{self, JsonArg};
 use crate::report::changes_page;
-use crate::text::colour::by_sigma;
+use crate::text::colour::sigma;
 use crate::text::wrapped;
 
 /// Arguments of `hitch changes`.
@@ -160,7 +160,6 @@ impl Adopted {
 impl std::fmt::Display for Changes {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (baseline, new) = (&self.baseline, &self.new);
-        let sigma = |error: f64| by_sigma(&format!("{error:.2}"), error);
         let line = baseline.as_reference(&sigma(baseline.head.error_after));
         writeln!(f, "{}", wrapped(&line))?;
         let line = format!(

@@ -5,7 +5,7 @@ use std::fmt;
 use hitch_plant::Channel;
 
 use super::{Cell, ChannelError, Comparison, Grouping};
-use crate::text::colour::by_sigma;
+use crate::text::colour::{by_sigma, sigma};
 use crate::text::{Table, indented, wrapped};
 use crate::web::heat_table::{HeatTable, Shade};
 
@@ -125,11 +125,6 @@ impl Comparison {
         }
         Ok(())
     }
-}
-
-/// An error in sigma, in its colour.
-fn sigma(error: f64) -> String {
-    by_sigma(&format!("{error:.2}"), error)
 }
 
 impl HeatTable {

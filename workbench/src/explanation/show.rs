@@ -9,7 +9,7 @@ use super::{
     Alternative, Candidate, ChannelFigures, Diagnosis, Explanation, Head, Next, NotVisible,
     Parameter, Step, Suggested, UNSUITABLE_BASE, Unexplained,
 };
-use crate::text::colour::{self, by_sigma};
+use crate::text::colour::{self, by_sigma, sigma};
 use crate::text::words;
 use crate::text::{Table, indented, joined, known, significant, wrapped};
 
@@ -180,10 +180,7 @@ impl fmt::Display for Diagnosis {
             table.row([
                 candidate.name(),
                 format!("{:.1} %", 100.0 * candidate.explains),
-                by_sigma(
-                    &format!("{:.2}", candidate.error_after),
-                    candidate.error_after,
-                ),
+                sigma(candidate.error_after),
                 words::in_words(candidate.confidence).to_owned(),
                 format!("{:.2}", candidate.detectability),
             ]);
@@ -233,8 +230,7 @@ impl fmt::Display for Head {
         }
         let head = format!("Campaign {}, model {}", self.campaign, self.model);
         writeln!(f, "{}", wrapped(&head))?;
-        let [before, after] = [self.error_before, self.error_after]
-            .map(|error| by_sigma(&format!("{error:.2}"), error));
+        let [before, after] = [self.error_before, self.error_after].map(sigma);
         writeln!(
             f,
             "  error {before} -> {after} sigma (noise of the instruments: {:.2})\n",
@@ -336,7 +332,7 @@ impl fmt::Display for Step {
         detail(&format!(
             "error {:.2} -> {}, {}; confidence: {}; detectability {:.2}",
             self.error_before,
-            by_sigma(&format!("{:.2}", self.error_after), self.error_after),
+            sigma(self.error_after),
             self.on_held_out(),
             words::probable(self.confidence),
             self.detectability

@@ -114,6 +114,21 @@ pub struct Chart<'a> {
     pub lines: Vec<Line>,
 }
 
+impl<'a> Chart<'a> {
+    /// A chart over the time in s; `y_title` has the unit.
+    pub fn over_time(
+        caption: impl Into<String>,
+        y_title: &'a str,
+        lines: impl IntoIterator<Item = Line>,
+    ) -> Self {
+        Self {
+            caption: caption.into(),
+            axes: ["time, s", y_title],
+            lines: lines.into_iter().collect(),
+        }
+    }
+}
+
 impl Chart<'_> {
     /// The chart as a figure; empty if no line has a value.
     pub fn figure(&self) -> Markup {

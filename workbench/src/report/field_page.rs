@@ -1,5 +1,7 @@
 //! The report of a scenario of the field: figures, and a course over time.
 
+use hitch_closed_loop::Sample;
+use hitch_field::tractor::Outputs;
 use hitch_plant::Model;
 use maud::{Markup, html};
 
@@ -26,72 +28,49 @@ pub fn page(scenario: &str, model: &Model, calibration: &str, run: &FieldRun) ->
 }
 
 fn course(run: &FieldRun) -> Markup {
-    let times = |index: usize| run.hitch.get(index).map_or(0.0, |sample| sample.time_s);
     let indices = || (0..run.hitch.len()).step_by(EVERY);
-    let hitch = |name: &str, stroke, value: &dyn Fn(&hitch_closed_loop::Sample) -> f64| {
-        let points =
-            indices().filter_map(|index| Some((times(index), value(run.hitch.get(index)?))));
-        (name.to_owned(), stroke, points.unzip())
+    let hitch = |name: &str, stroke, value: fn(&Sample) -> f64| {
+        let sample = |index: usize| run.hitch.get(index).map(|at| (at.time_s, value(at)));
+        (
+            name.to_owned(),
+            stroke,
+            indices().filter_map(sample).unzip(),
+        )
     };
-    let field = |name: &str, value: &dyn Fn(&hitch_field::tractor::Outputs) -> f64| {
-        let points =
-            indices().filter_map(|index| Some((times(index), value(run.field.get(index)?))));
-        (name.to_owned(), Stroke::After, points.unzip())
+    let field = |name: &str, value: fn(&Outputs) -> f64| {
+        let sample =
+            |index: usize| Some((run.hitch.get(index)?.time_s, value(run.field.get(index)?)));
+        [(
+            name.to_owned(),
+            Stroke::After,
+            indices().filter_map(sample).unzip(),
+        )]
     };
-    let chart = |caption: &str, y_title, lines| Chart {
-        caption: caption.to_owned(),
-        axes: ["time, s", y_title],
-        lines,
-    };
-    let mut charts = vec![chart(
-        "Rocker angle",
-        "angle, deg",
-        vec![
-            hitch("set point", Stroke::Measured, &|sample| {
-                f64::from(sample.outputs.target.0) * 1e-3
-            }),
-            hitch("hitch", Stroke::After, &|sample| sample.angle_deg),
-        ],
-    )];
+    let target_deg = |sample: &Sample| f64::from(sample.outputs.target.0) * 1e-3;
+    let angles = [
+        hitch("set point", Stroke::Measured, target_deg),
+        hitch("hitch", Stroke::After, |sample| sample.angle_deg),
+    ];
+    let mut charts = vec![Chart::over_time("Rocker angle", "angle, deg", angles)];
     if !run.field.is_empty() {
+        let draft = field("draft", |field| field.draft_n * 1e-3);
+        let depth = field("depth", |field| field.depth_m * 100.0);
+        let slip = field("slip", |field| field.slip * 100.0);
         charts.extend([
-            chart(
-                "Draft",
-                "draft, kN",
-                vec![field("draft", &|field| field.draft_n * 1e-3)],
-            ),
-            chart(
-                "Depth",
-                "depth, cm",
-                vec![field("depth", &|field| field.depth_m * 100.0)],
-            ),
-            chart(
-                "Slip",
-                "slip, %",
-                vec![field("slip", &|field| field.slip * 100.0)],
-            ),
+            Chart::over_time("Draft", "draft, kN", draft),
+            Chart::over_time("Depth", "depth, cm", depth),
+            Chart::over_time("Slip", "slip, %", slip),
         ]);
     }
+    let pressure = |sample: &Sample| sample.cylinder_pressure_bar;
+    let pressure = [hitch("cylinder", Stroke::After, pressure)];
+    let currents = [
+        hitch("lift coil", Stroke::Lift, Sample::lift_current_a),
+        hitch("lowering coil", Stroke::Lower, Sample::lower_current_a),
+    ];
     charts.extend([
-        chart(
-            "Cylinder pressure",
-            "pressure, bar",
-            vec![hitch("cylinder", Stroke::After, &|sample| {
-                sample.cylinder_pressure_bar
-            })],
-        ),
-        chart(
-            "Coil currents",
-            "current, A",
-            vec![
-                hitch("lift coil", Stroke::Lift, &|sample| {
-                    f64::from(sample.outputs.lift_current.0) * 1e-3
-                }),
-                hitch("lowering coil", Stroke::Lower, &|sample| {
-                    f64::from(sample.outputs.lower_current.0) * 1e-3
-                }),
-            ],
-        ),
+        Chart::over_time("Cylinder pressure", "pressure, bar", pressure),
+        Chart::over_time("Coil currents", "current, A", currents),
     ]);
     drawn("Angle, field and coils over time", &charts)
 }

@@ -34,13 +34,7 @@ fn sections(shown: &Shown) -> Markup {
     html! {
         h1 { "Closed loop on " (shown.model.name) }
         p { "Calibration: " (shown.calibration)
-            @if shown.settings.is_empty() { "." } @else {
-                ", with "
-                @for (i, setting) in shown.settings.iter().enumerate() {
-                    @if i > 0 { ", " } code { (setting) }
-                }
-                "."
-            }
+            @if !shown.settings.is_empty() { ", with " (settings(shown.settings)) } "."
         }
         p.lead { (summed_up(&run.summary)) }
         (worst::section(&run.results))
@@ -49,6 +43,13 @@ fn sections(shown: &Shown) -> Markup {
         h2 { "Figures of every move" }
         (page::table(&HEADER, run.results.iter().map(row)))
     }
+}
+
+/// Settings from the command line.
+pub fn settings(settings: &[String]) -> Markup {
+    html! { @for (i, setting) in settings.iter().enumerate() {
+        @if i > 0 { ", " } code { (setting) }
+    } }
 }
 
 /// Values of a quantity in order of first occurrence.

@@ -8,9 +8,6 @@ use super::chart::{Chart, Stroke};
 use super::drawn::drawn;
 use crate::explanation::{Next, TWO_LINES};
 
-/// Titles of the axis of time.
-const TIME: &str = "time, s";
-
 /// Runs and pictures of the proposed experiment; empty if no manoeuvre is proposed.
 pub fn next_figure(next: &Next) -> Markup {
     let (Some(proposal), Some(detail)) = (&next.proposal, &next.next_experiment_detail) else {
@@ -50,14 +47,11 @@ fn charts(expected: &[(&str, Vec<Run>)], index: usize) -> Vec<Chart<'static>> {
             (first.time_s.clone(), values.clone()),
         )
     };
-    let currents = Chart {
-        caption: "Currents".to_owned(),
-        axes: [TIME, "current, A"],
-        lines: vec![
-            current("lift current", Stroke::Lift, &first.lift_current_a),
-            current("lowering current", Stroke::Lower, &first.lower_current_a),
-        ],
-    };
+    let currents = [
+        current("lift current", Stroke::Lift, &first.lift_current_a),
+        current("lowering current", Stroke::Lower, &first.lower_current_a),
+    ];
+    let currents = Chart::over_time("Currents", "current, A", currents);
     let channels = Channel::ALL.into_iter().filter_map(|channel| {
         let line = |((title, run), stroke): (&(&str, &Run), Stroke)| {
             let values = run.channel(channel)?.to_vec();
@@ -65,11 +59,7 @@ fn charts(expected: &[(&str, Vec<Run>)], index: usize) -> Vec<Chart<'static>> {
         };
         let strokes = [Stroke::After, Stroke::Before];
         let lines: Vec<_> = runs.iter().zip(strokes).filter_map(line).collect();
-        (!lines.is_empty()).then(|| Chart {
-            caption: channel.title().to_owned(),
-            axes: [TIME, axis(channel)],
-            lines,
-        })
+        (!lines.is_empty()).then(|| Chart::over_time(channel.title(), axis(channel), lines))
     });
     std::iter::once(currents).chain(channels).collect()
 }

@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn only_long_tables_are_folded() {
-        let of = |rows: usize| table(&["run"], &vec![vec!["a".to_owned()]; rows]).into_string();
+        let of = |rows: usize| table(&["run"], vec![vec!["a".to_owned()]; rows]).into_string();
         assert!(!of(12).contains("<details>"));
         assert!(of(13).contains("<summary>Table of 13 rows</summary>"));
     }

@@ -149,12 +149,8 @@ fn figure(view: &RunView, channel: &ChannelView) -> Markup {
         }
     }
     let title = format!("{}, {}", channel.channel.title(), channel.channel.unit());
-    Chart {
-        caption: format!("{}: error {error} sigma", channel.channel.title()),
-        axes: ["time, s", &title],
-        lines,
-    }
-    .figure()
+    let caption = format!("{}: error {error} sigma", channel.channel.title());
+    Chart::over_time(caption, &title, lines).figure()
 }
 
 #[cfg(test)]

@@ -26,24 +26,13 @@ pub fn compared(runs: Named<'_, LoopRun>, index: usize) -> Markup {
         Stroke::Measured,
         first.traces[index].points(end_s, |sample| sample.lever_deg),
     );
+    let angles = [set_point]
+        .into_iter()
+        .chain(each(|sample| sample.angle_deg));
+    let currents = each(|sample| sample.lift_current_a().max(sample.lower_current_a()));
     let charts = [
-        Chart {
-            caption: "Rocker angle".to_owned(),
-            axes: ["time, s", "angle, deg"],
-            lines: [set_point]
-                .into_iter()
-                .chain(each(|sample| sample.angle_deg))
-                .collect(),
-        },
-        Chart {
-            caption: "Coil current".to_owned(),
-            axes: ["time, s", "current, A"],
-            lines: each(|sample| {
-                let outputs = &sample.outputs;
-                f64::from(outputs.lower_current.0.max(outputs.lift_current.0)) * 1e-3
-            })
-            .collect(),
-        },
+        Chart::over_time("Rocker angle", "angle, deg", angles),
+        Chart::over_time("Coil current", "current, A", currents),
     ];
     let label = format!(
         "Angle and coil current from {:.1} to {:.1} degrees with each calibration",
@@ -86,23 +75,19 @@ pub fn pressed(runs: Named<'_, PressRun>, index: usize) -> Markup {
     );
     let requested = ("requested".to_owned(), Stroke::Measured, requested);
     let speeds = each(|trace| trace.speeds_deg_per_s(EVERY_MS));
+    let angles = each(|trace| {
+        let angles = trace.angles_deg.iter().enumerate().step_by(EVERY_MS);
+        angles
+            .map(|(ms, angle_deg)| (ms as f64 * 1e-3, *angle_deg))
+            .unzip()
+    });
     let charts = [
-        Chart {
-            caption: "Speed of the rocker, mean over 100 ms".to_owned(),
-            axes: ["time, s", "speed, deg/s"],
-            lines: [requested].into_iter().chain(speeds).collect(),
-        },
-        Chart {
-            caption: "Rocker angle".to_owned(),
-            axes: ["time, s", "angle, deg"],
-            lines: each(|trace| {
-                let angles = trace.angles_deg.iter().enumerate().step_by(EVERY_MS);
-                angles
-                    .map(|(ms, angle_deg)| (ms as f64 * 1e-3, *angle_deg))
-                    .unzip()
-            })
-            .collect(),
-        },
+        Chart::over_time(
+            "Speed of the rocker, mean over 100 ms",
+            "speed, deg/s",
+            [requested].into_iter().chain(speeds),
+        ),
+        Chart::over_time("Rocker angle", "angle, deg", angles),
     ];
     let label =
         format!("Speed and angle of the rocker at {rate:+.1} degrees/s with each calibration");

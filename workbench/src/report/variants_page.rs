@@ -5,7 +5,7 @@ use std::path::Path;
 use hitch_plant::Model;
 use maud::{Markup, html};
 
-use super::loop_page::course;
+use super::loop_page::{course, settings};
 use super::page;
 use super::same_move::{compared, pressed};
 use crate::closed_loop::show_variants::{self, Named, Sides};
@@ -86,11 +86,6 @@ fn press_heading(runs: Named<'_, PressRun>, index: usize) -> String {
 }
 
 fn head(setup: &Setup<'_>) -> Markup {
-    let settings = |settings: &[String]| {
-        html! { @for (i, setting) in settings.iter().enumerate() {
-            @if i > 0 { ", " } code { (setting) }
-        } }
-    };
     html! {
         h1 { "Closed loop on " (setup.model.name) }
         p { "Calibration: " (setup.calibration.map_or_else(|| "nominal".to_owned(), |path| path.display().to_string()))

@@ -31,6 +31,12 @@ pub fn by_sigma(text: &str, error: f64) -> String {
     }
 }
 
+/// An error in sigma with two decimals, in its colour.
+#[must_use]
+pub fn sigma(error: f64) -> String {
+    by_sigma(&format!("{error:.2}"), error)
+}
+
 /// The name of a verdict in its colour.
 #[must_use]
 pub fn verdict(name: &str) -> String {

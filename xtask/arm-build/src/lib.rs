@@ -2,6 +2,7 @@
 
 pub mod images;
 pub mod process;
+pub mod programs;
 pub mod setup;
 pub mod toolchain;
 pub mod workspace;

@@ -7,22 +7,33 @@ use anyhow::{Context, Result, bail};
 use crate::process;
 use crate::toolchain::{ARM, Target, Way};
 
-/// The emulator executable.
-pub const EMULATOR: &str = "qemu-system-arm";
+/// A program, and Debian's package of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Tool {
+    program: &'static str,
+    package: &'static str,
+}
 
+/// The ARM emulator.
+pub const EMULATOR: Tool = tool("qemu-system-arm", "qemu-system-arm");
 /// The browser for the tests of the page of `hitch serve`.
-pub const BROWSER: &str = "chromium";
+pub const BROWSER: Tool = tool("chromium", "chromium");
+/// What the TypeScript compiler runs on.
+pub const NODE: Tool = tool("node", "nodejs");
+/// The package manager of [`NODE`].
+pub const NPM: Tool = tool("npm", "npm");
 
-/// Node.js and its package manager: programs, and Debian's packages.
-const NODE: [(&str, &str); 2] = [("node", "nodejs"), ("npm", "npm")];
+const fn tool(program: &'static str, package: &'static str) -> Tool {
+    Tool { program, package }
+}
 
 const DEBIAN_TOOLCHAIN: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
 
 /// Finds or installs everything.
 pub fn run(way: Option<Way>) -> Result<()> {
     toolchain(way, ARM)?;
-    emulator()?;
-    browser()
+    EMULATOR.find()?;
+    BROWSER.find()
 }
 
 /// Finds or installs a compiler for a target: `wanted`, or else the first source that works.
@@ -44,48 +55,28 @@ pub fn toolchain(wanted: Option<Way>, target: Target) -> Result<Way> {
     Ok(way)
 }
 
-/// Finds or installs the emulator.
-pub fn emulator() -> Result<()> {
-    if version_of(EMULATOR).is_none() {
-        install_packages(&[EMULATOR]).with_context(|| {
-            format!("no {EMULATOR}: install QEMU for ARM (Debian's package has the same name)")
-        })?;
-    }
-    let version = version_of(EMULATOR)
-        .with_context(|| format!("{EMULATOR} is installed, but does not run"))?;
-    println!("ARM emulator: {version}");
-    Ok(())
-}
-
-/// Finds or installs the browser.
-pub fn browser() -> Result<()> {
-    if version_of(BROWSER).is_none() {
-        install_packages(&[BROWSER])
-            .with_context(|| format!("no {BROWSER}: install Debian's package of that name"))?;
-    }
-    let version =
-        version_of(BROWSER).with_context(|| format!("{BROWSER} is installed, but does not run"))?;
-    println!("browser: {version}");
-    Ok(())
-}
-
-/// Finds or installs Node.js, which the TypeScript compiler runs on, with its package manager.
-pub fn node() -> Result<()> {
-    for (program, package) in NODE {
-        if version_of(program).is_none() {
+impl Tool {
+    /// Finds or installs it.
+    ///
+    /// # Errors
+    /// If it is missing and can't be installed, or does not run.
+    pub fn find(self) -> Result<()> {
+        let Self { program, package } = self;
+        if self.version().is_none() {
             install_packages(&[package])
                 .with_context(|| format!("no {program}: install Debian's package {package}"))?;
         }
-        let version = version_of(program)
-            .with_context(|| format!("{program} is installed, but does not run"))?;
+        let version = self.version();
+        let version =
+            version.with_context(|| format!("{program} is installed, but does not run"))?;
         println!("{program}: {version}");
+        Ok(())
     }
-    Ok(())
-}
 
-fn version_of(program: &str) -> Option<String> {
-    let version = process::output(&mut process::command(program, &["--version"]))?;
-    version.lines().next().map(str::to_owned)
+    fn version(self) -> Option<String> {
+        let version = process::output(&mut process::command(self.program, &["--version"]))?;
+        version.lines().next().map(str::to_owned)
+    }
 }
 
 /// Tries to install the packages of `way`; returns the reason for a failure.

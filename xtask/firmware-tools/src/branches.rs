@@ -1,4 +1,4 @@
-//! Branches of a test with counters: how often each condition was true, and how often false.
+//! The counters of a test: how often each piece of code was reached, and each condition was true and false.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use llvm_profparser::{
     Counter, CounterType, CoverageMapping, ExprKind, FunctionRecordV3, RegionKind,
 };
 
-/// A condition, by its file relative to the workspace's root; line and column of its begin and its end.
+/// A piece of code, by its file relative to the workspace's root; line and column of its begin and its end.
 pub type Place = (PathBuf, [usize; 4]);
 
 /// How often a condition was true and false.
@@ -31,14 +31,23 @@ impl Taken {
     }
 }
 
-/// The conditions of the files that are `covered`. Copies of a function count together.
-pub fn branches(
+/// What the tests have reached.
+#[derive(Debug, Default)]
+pub struct Counted {
+    /// How often each piece of code was reached.
+    pub pieces: BTreeMap<Place, i64>,
+    /// The conditions.
+    pub branches: BTreeMap<Place, Taken>,
+}
+
+/// The counters of the files that are `covered`. Copies of a function count together.
+pub fn counted(
     mapping: &CoverageMapping<'_>,
     profile: &InstrumentationProfile,
     root: &Path,
     covered: &[&str],
-) -> Result<BTreeMap<Place, Taken>> {
-    let mut found: BTreeMap<Place, Taken> = BTreeMap::new();
+) -> Result<Counted> {
+    let mut found = Counted::default();
     for info in mapping.mapping_info_iter() {
         let info = info.context("can't read the counters' places")?;
         for function in &info.cov_fun {
@@ -46,11 +55,7 @@ pub fn branches(
             let counts = profile
                 .find_record_by_hash(function.header.name_hash)
                 .map_or(&[][..], |record| &record.record.counts[..]);
-            let branches = function
-                .regions
-                .iter()
-                .filter(|region| region.kind == RegionKind::Branch);
-            for region in branches {
+            for region in &function.regions {
                 let Some(file) = files.get(region.file_id) else {
                     continue;
                 };
@@ -59,10 +64,15 @@ pub fn branches(
                     continue;
                 }
                 let at = &region.loc;
-                let place = [at.line_start, at.column_start, at.line_end, at.column_end];
-                let taken = found.entry((file.to_owned(), place)).or_default();
-                taken.yes += count(region.count, function, counts);
-                taken.no += count(region.false_count, function, counts);
+                let lines = [at.line_start, at.column_start, at.line_end, at.column_end];
+                let place = (file.to_owned(), lines);
+                let yes = count(region.count, function, counts);
+                *found.pieces.entry(place.clone()).or_default() += yes;
+                if region.kind == RegionKind::Branch {
+                    let taken = found.branches.entry(place).or_default();
+                    taken.yes += yes;
+                    taken.no += count(region.false_count, function, counts);
+                }
             }
         }
     }

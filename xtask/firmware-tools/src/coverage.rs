@@ -10,10 +10,10 @@ use std::env;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, Stdio};
+use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
-use arm_build::{process, workspace};
+use arm_build::{process, programs, workspace};
 use llvm_profparser::{CoverageMapping, merge_profiles};
 
 use crate::branches::{self, Place, Taken};
@@ -43,9 +43,9 @@ pub fn run() -> Result<()> {
     let profile = merge_profiles(&[counters]).context("can't read the counters")?;
     let objects = [test];
     let mapping = CoverageMapping::new(&objects, &profile, true)?;
-    let branches = branches::branches(&mapping, &profile, &workspace::root(), &COVERED)?;
-    judge(&regions(&mapping)?)?;
-    judge_branches(&branches)
+    let counted = branches::counted(&mapping, &profile, &workspace::root(), &COVERED)?;
+    judge(&counted.pieces)?;
+    judge_branches(&counted.branches)
 }
 
 /// Lists the outcomes that no test has. They are an error.
@@ -74,26 +74,16 @@ fn judge_branches(branches: &BTreeMap<Place, Taken>) -> Result<()> {
 /// Compiles a test with counters; returns the program. Counters of build scripts are written to `folder`.
 fn build(tests: &[&str], folder: &Path) -> Result<PathBuf> {
     let mut command = process::command(workspace::cargo(), &["test", "--locked", "--no-run"]);
-    command.args(tests).arg("--message-format=json");
+    command.args(tests);
     // Only the workspace's crates have counters, so their dependencies are not compiled again.
     let this = env::current_exe().context("where is this program?")?;
     command
         .env("RUSTC_WORKSPACE_WRAPPER", this)
         .env("LLVM_PROFILE_FILE", folder.join("build.profraw"))
         .env(COUNTING, "1");
-    process::announce(&command);
-    let output = command.stderr(Stdio::inherit()).output()?;
-    ensure!(
-        output.status.success(),
-        "the tests don't compile; see above"
-    );
-    let messages = String::from_utf8_lossy(&output.stdout);
     // Of all artefacts reported by cargo only the test is a program.
-    let program = messages.lines().find_map(|line| {
-        let (_, rest) = line.split_once("\"executable\":\"")?;
-        Some(PathBuf::from(rest.split_once('"')?.0))
-    });
-    program.context("cargo names no test program")
+    let program = programs::build(&mut command)?.into_iter().next();
+    Ok(program.context("cargo names no test program")?.path)
 }
 
 /// If cargo has started this program in place of the compiler: compiles with counters.
@@ -112,67 +102,28 @@ pub fn compile() -> Option<ExitCode> {
     })
 }
 
-/// A region of code without branches, by its file relative to the workspace's root, with its count.
-struct Region {
-    file: PathBuf,
-    first_line: usize,
-    first_column: usize,
-    last_line: usize,
-    hits: usize,
-}
-
-/// The regions of the covered files.
-fn regions(mapping: &CoverageMapping<'_>) -> Result<Vec<Region>> {
-    let report = mapping.generate_report()?;
-    let root = workspace::root();
-    let mut regions = Vec::new();
-    for (path, result) in &report.files {
-        let file = path.strip_prefix(&root).unwrap_or(path);
-        if COVERED.iter().any(|covered| file.starts_with(covered)) {
-            regions.extend(result.hits.iter().map(|(place, hits)| Region {
-                file: file.to_owned(),
-                first_line: place.line_start,
-                first_column: place.column_start,
-                last_line: place.line_end,
-                hits: *hits,
-            }));
+/// Lists the pieces of code that no test reaches. They are an error.
+fn judge(pieces: &BTreeMap<Place, i64>) -> Result<()> {
+    let mut missed = 0;
+    let (mut files, mut lines) = (BTreeSet::new(), BTreeSet::new());
+    for ((file, [line, column, last, _]), hits) in pieces {
+        if *hits == 0 {
+            println!("{}:{line}:{column} is never reached", file.display());
+            missed += 1;
         }
+        files.insert(file);
+        lines.extend((*line..=*last).map(|line| (file, line)));
     }
-    Ok(regions)
-}
-
-fn judge(regions: &[Region]) -> Result<()> {
-    let missed: Vec<&Region> = regions.iter().filter(|region| region.hits == 0).collect();
-    for region in &missed {
-        println!(
-            "{}:{}:{} is never reached",
-            region.file.display(),
-            region.first_line,
-            region.first_column
-        );
-    }
-    let files: BTreeSet<&Path> = regions.iter().map(|region| region.file.as_path()).collect();
-    let lines: BTreeSet<(&Path, usize)> = regions
-        .iter()
-        .flat_map(|region| {
-            (region.first_line..=region.last_line).map(|line| (region.file.as_path(), line))
-        })
-        .collect();
     println!(
         "the safety envelope: {} of {} pieces of code on {} lines of {} files are reached by its tests",
-        regions.len() - missed.len(),
-        regions.len(),
+        pieces.len() - missed,
+        pieces.len(),
         lines.len(),
         files.len()
     );
     let mut sources = 0;
     for covered in COVERED {
-        let path = workspace::root().join(covered);
-        sources += if path.is_dir() {
-            fs::read_dir(path)?.count()
-        } else {
-            1
-        };
+        sources += workspace::files(&workspace::root().join(covered))?.len();
     }
     if files.len() != sources {
         bail!(
@@ -182,7 +133,7 @@ fn judge(regions: &[Region]) -> Result<()> {
         );
     }
     ensure!(
-        missed.is_empty(),
+        missed == 0,
         "the envelope's tests leave code out; see above"
     );
     Ok(())

@@ -73,22 +73,17 @@ fn finished(way: Way) -> Result<Vec<Image>> {
         let path = of_board(way, board);
         seal::write(&path)?;
         programming::write(&path)?;
-        forbid_panics(&path)?;
-        Image::measured(format!("ecu-{board}"), &path)
+        let image = Image::measured(format!("ecu-{board}"), &path)?;
+        // Whatever leads to a panic in a flashed image would be a fault of the program.
+        ensure!(
+            image.stack.panics.is_empty(),
+            "{} can panic:\n  {}\nuse `get`, patterns, and saturating or checked arithmetic there",
+            path.display(),
+            image.stack.panics.join("\n  ")
+        );
+        Ok(image)
     });
     let emulated =
         std::iter::once_with(|| Image::measured(budget::EMULATED.to_owned(), &emulated(way)));
     of_boards.chain(emulated).collect()
-}
-
-/// A flashed image has no code that panics: whatever leads there would be a fault of the program.
-fn forbid_panics(image: &Path) -> Result<()> {
-    let panics = image_stack::panics(image)?;
-    ensure!(
-        panics.is_empty(),
-        "{} can panic:\n  {}\nuse `get`, patterns, and saturating or checked arithmetic there",
-        image.display(),
-        panics.join("\n  ")
-    );
-    Ok(())
 }

@@ -70,21 +70,18 @@ impl<'a> Chains<'a> {
             None => {}
         }
         self.known.insert(address, Search::Begun);
-        let mut deepest = vec![(function.name.clone(), frame.deepest)];
+        let mut deepest = Chain(vec![(function.name.clone(), frame.deepest)]);
         for (callee, bytes) in &frame.calls {
             for target in self.targets(*callee) {
                 let inner = self.deepest(target)?;
-                let bytes_of =
-                    |chain: &[(String, i32)]| chain.iter().map(|(_, bytes)| bytes).sum::<i32>();
-                if bytes + inner.bytes() > bytes_of(&deepest) {
-                    deepest = vec![(function.name.clone(), *bytes)];
-                    deepest.extend(inner.0);
+                if bytes + inner.bytes() > deepest.bytes() {
+                    let own = (function.name.clone(), *bytes);
+                    deepest = Chain(std::iter::once(own).chain(inner.0).collect());
                 }
             }
         }
-        let chain = Chain(deepest);
-        self.known.insert(address, Search::Done(chain.clone()));
-        Ok(chain)
+        self.known.insert(address, Search::Done(deepest.clone()));
+        Ok(deepest)
     }
 
     fn targets(&self, callee: Callee) -> Vec<u32> {

@@ -110,7 +110,7 @@ impl Decoder {
         let arch = detail.arch_detail();
         let arm = arch.arm().context("no details")?;
         let parts = Parts {
-            id: instruction.id().0,
+            kind: ArmInsn::from(instruction.id().0),
             arm,
             operands: arm.operands().collect(),
         };
@@ -143,22 +143,22 @@ impl Decoder {
     }
 }
 
+fn register_of(operand: &ArmOperand) -> Option<RegId> {
+    match operand.op_type {
+        ArmOperandType::Reg(register) => Some(register),
+        _ => None,
+    }
+}
+
 struct Parts<'a> {
-    id: u32,
+    kind: ArmInsn,
     arm: &'a ArmInsnDetail<'a>,
     operands: Vec<ArmOperand>,
 }
 
 impl Parts<'_> {
-    fn is(&self, instructions: &[ArmInsn]) -> bool {
-        instructions.iter().any(|known| *known as u32 == self.id)
-    }
-
     fn register(&self, index: usize) -> Option<RegId> {
-        match self.operands.get(index)?.op_type {
-            ArmOperandType::Reg(register) => Some(register),
-            _ => None,
-        }
+        register_of(self.operands.get(index)?)
     }
 
     fn immediate(&self) -> Option<i32> {
@@ -171,16 +171,12 @@ impl Parts<'_> {
     }
 
     fn registers(&self) -> impl Iterator<Item = RegId> {
-        let register = |operand: &ArmOperand| match operand.op_type {
-            ArmOperandType::Reg(register) => Some(register),
-            _ => None,
-        };
-        self.operands.iter().filter_map(register)
+        self.operands.iter().filter_map(register_of)
     }
 
     fn condition(&self) -> Option<Condition> {
         use ArmInsn::{ARM_INS_CBNZ, ARM_INS_CBZ};
-        if self.is(&[ARM_INS_CBZ, ARM_INS_CBNZ]) {
+        if matches!(self.kind, ARM_INS_CBZ | ARM_INS_CBNZ) {
             return Some(Condition::Register);
         }
         match self.arm.cc() {
@@ -198,7 +194,11 @@ impl Parts<'_> {
 
     fn sets_flags(&self) -> bool {
         use ArmInsn::{ARM_INS_CMN, ARM_INS_CMP, ARM_INS_TEQ, ARM_INS_TST};
-        self.arm.update_flags() || self.is(&[ARM_INS_CMP, ARM_INS_CMN, ARM_INS_TST, ARM_INS_TEQ])
+        let compares = matches!(
+            self.kind,
+            ARM_INS_CMP | ARM_INS_CMN | ARM_INS_TST | ARM_INS_TEQ
+        );
+        compares || self.arm.update_flags()
     }
 
     /// How much memory operand `[sp, #n]!` or `[sp], #n` moves the stack pointer.
@@ -214,14 +214,16 @@ impl Parts<'_> {
         self.arm.writeback().then_some(memory.disp() + behind)
     }
 
-    /// Bytes of the floating-point registers among the operands: a word each, or two of a double one.
-    fn floating_bytes(&self) -> Result<i32> {
-        use ArmReg::{ARM_REG_D0, ARM_REG_D31, ARM_REG_S0, ARM_REG_S31};
+    /// Bytes of the registers among the operands that are saved or restored: a word each, or two of a double one.
+    fn saved_bytes(&self) -> Result<i32> {
+        use ArmReg::{ARM_REG_D0, ARM_REG_D31, ARM_REG_R0, ARM_REG_R12, ARM_REG_S0, ARM_REG_S31};
         let is_in = |register: RegId, first: ArmReg::Type, last: ArmReg::Type| {
             (first..=last).contains(&ArmReg::Type::from(register.0))
         };
         let of_one = |register: RegId| match register {
             STACK_POINTER => Ok(0),
+            LINK | PROGRAM_COUNTER => Ok(WORD_BYTES),
+            _ if is_in(register, ARM_REG_R0, ARM_REG_R12) => Ok(WORD_BYTES),
             _ if is_in(register, ARM_REG_S0, ARM_REG_S31) => Ok(WORD_BYTES),
             _ if is_in(register, ARM_REG_D0, ARM_REG_D31) => Ok(2 * WORD_BYTES),
             _ => bail!("saves a register that isn't known"),
@@ -236,18 +238,10 @@ impl Parts<'_> {
             ARM_INS_STM, ARM_INS_STMDB, ARM_INS_SUB, ARM_INS_SUBW, ARM_INS_VLDMDB, ARM_INS_VLDMIA,
             ARM_INS_VPOP, ARM_INS_VPUSH, ARM_INS_VSTMDB, ARM_INS_VSTMIA,
         };
-        let words = |count: usize| i32::try_from(count).unwrap_or(i32::MAX) * WORD_BYTES;
-        if self.is(&[ARM_INS_PUSH]) {
-            return Ok(words(self.operands.len()));
-        }
-        if self.is(&[ARM_INS_POP]) {
-            return Ok(-words(self.operands.len()));
-        }
-        if self.is(&[ARM_INS_VPUSH]) {
-            return self.floating_bytes();
-        }
-        if self.is(&[ARM_INS_VPOP]) {
-            return Ok(-self.floating_bytes()?);
+        match self.kind {
+            ARM_INS_PUSH | ARM_INS_VPUSH => return self.saved_bytes(),
+            ARM_INS_POP | ARM_INS_VPOP => return Ok(-self.saved_bytes()?),
+            _ => {}
         }
         if let Some(moved) = self.written_back() {
             return Ok(-moved);
@@ -256,32 +250,17 @@ impl Parts<'_> {
             return Ok(0);
         }
         let by_itself = self.operands.len() == 2 || self.register(1) == Some(STACK_POINTER);
-        match self.immediate() {
-            Some(bytes) if by_itself && self.is(&[ARM_INS_SUB, ARM_INS_SUBW]) => Ok(bytes),
-            Some(bytes) if by_itself && self.is(&[ARM_INS_ADD, ARM_INS_ADDW]) => Ok(-bytes),
-            _ if self.is(&[ARM_INS_LDM, ARM_INS_STM, ARM_INS_LDMDB, ARM_INS_STMDB]) => {
-                let count = words(self.operands.len() - 1);
-                match (self.arm.writeback(), self.is(&[ARM_INS_STMDB])) {
-                    (false, _) => Ok(0),
-                    (true, true) => Ok(count),
-                    (true, false) if self.is(&[ARM_INS_LDM]) => Ok(-count),
-                    _ => bail!("uses the stack upside down"),
-                }
+        let moves = self.arm.writeback();
+        match (self.kind, self.immediate()) {
+            (ARM_INS_SUB | ARM_INS_SUBW, Some(bytes)) if by_itself => Ok(bytes),
+            (ARM_INS_ADD | ARM_INS_ADDW, Some(bytes)) if by_itself => Ok(-bytes),
+            (ARM_INS_STMDB | ARM_INS_VSTMDB, _) if moves => self.saved_bytes(),
+            (ARM_INS_LDM | ARM_INS_VLDMIA, _) if moves => Ok(-self.saved_bytes()?),
+            (ARM_INS_STM | ARM_INS_VSTMIA | ARM_INS_LDMDB | ARM_INS_VLDMDB, _) if moves => {
+                bail!("uses the stack upside down")
             }
-            _ if self.is(&[
-                ARM_INS_VLDMIA,
-                ARM_INS_VLDMDB,
-                ARM_INS_VSTMIA,
-                ARM_INS_VSTMDB,
-            ]) =>
-            {
-                match (self.arm.writeback(), self.is(&[ARM_INS_VSTMDB])) {
-                    (false, _) => Ok(0),
-                    (true, true) => self.floating_bytes(),
-                    (true, false) if self.is(&[ARM_INS_VLDMIA]) => Ok(-self.floating_bytes()?),
-                    _ => bail!("uses the stack upside down"),
-                }
-            }
+            (ARM_INS_STMDB | ARM_INS_VSTMDB | ARM_INS_LDM | ARM_INS_VLDMIA, _)
+            | (ARM_INS_STM | ARM_INS_VSTMIA | ARM_INS_LDMDB | ARM_INS_VLDMDB, _) => Ok(0),
             _ => bail!("moves the stack pointer in a way that can't be followed"),
         }
     }
@@ -289,13 +268,10 @@ impl Parts<'_> {
     /// Comparisons and stores have no result among their operands.
     fn is_read_only(&self) -> bool {
         use ArmInsn::{ARM_INS_CMN, ARM_INS_CMP, ARM_INS_MSR, ARM_INS_STR, ARM_INS_TST};
-        self.is(&[
-            ARM_INS_CMP,
-            ARM_INS_CMN,
-            ARM_INS_TST,
-            ARM_INS_STR,
-            ARM_INS_MSR,
-        ])
+        matches!(
+            self.kind,
+            ARM_INS_CMP | ARM_INS_CMN | ARM_INS_TST | ARM_INS_STR | ARM_INS_MSR
+        )
     }
 
     fn flow(&self) -> Result<Flow> {
@@ -307,40 +283,25 @@ impl Parts<'_> {
             let target = self.immediate().context("a branch without a target")?;
             Ok::<_, anyhow::Error>(target.cast_unsigned())
         };
-        if self.is(&[ARM_INS_B, ARM_INS_CBZ, ARM_INS_CBNZ]) {
-            return Ok(Flow::Jump(target()?));
-        }
-        if self.is(&[ARM_INS_BL]) {
-            return Ok(Flow::Call(target()?));
-        }
-        if self.is(&[ARM_INS_BLX]) {
-            return Ok(Flow::CallByAddress);
-        }
-        if self.is(&[ARM_INS_BX]) {
-            return Ok(if self.register(0) == Some(LINK) {
-                Flow::Return
-            } else {
-                Flow::JumpByAddress
-            });
-        }
-        if self.is(&[ARM_INS_TBB, ARM_INS_TBH]) {
-            let entry_bytes = if self.is(&[ARM_INS_TBB]) { 1 } else { 2 };
-            return Ok(Flow::Table { entry_bytes });
-        }
-        if self.is(&[ARM_INS_UDF]) {
-            return Ok(Flow::Nowhere);
-        }
-        if !self.registers().any(|register| register == PROGRAM_COUNTER) {
-            return Ok(Flow::On);
-        }
-        let restores = self.is(&[ARM_INS_POP]) || self.written_back().is_some();
-        if restores || (self.is(&[ARM_INS_LDM]) && self.register(0) == Some(STACK_POINTER)) {
-            return Ok(Flow::Return);
-        }
-        let writes = self.register(0) == Some(PROGRAM_COUNTER) || self.is(&[ARM_INS_LDM]);
-        ensure!(!writes, "goes where can't be told");
-        // What is left computes an address from it.
-        Ok(Flow::On)
+        let first = self.register(0);
+        Ok(match self.kind {
+            ARM_INS_B | ARM_INS_CBZ | ARM_INS_CBNZ => Flow::Jump(target()?),
+            ARM_INS_BL => Flow::Call(target()?),
+            ARM_INS_BLX => Flow::CallByAddress,
+            ARM_INS_BX if first == Some(LINK) => Flow::Return,
+            ARM_INS_BX => Flow::JumpByAddress,
+            ARM_INS_TBB => Flow::Table { entry_bytes: 1 },
+            ARM_INS_TBH => Flow::Table { entry_bytes: 2 },
+            ARM_INS_UDF => Flow::Nowhere,
+            _ if !self.registers().any(|register| register == PROGRAM_COUNTER) => Flow::On,
+            ARM_INS_POP => Flow::Return,
+            ARM_INS_LDM if first == Some(STACK_POINTER) => Flow::Return,
+            _ if self.written_back().is_some() => Flow::Return,
+            ARM_INS_LDM => bail!("goes where can't be told"),
+            _ if first == Some(PROGRAM_COUNTER) => bail!("goes where can't be told"),
+            // What is left computes an address from it.
+            _ => Flow::On,
+        })
     }
 
     /// `mov r7, sp` and `add r7, sp, #n`.
@@ -348,7 +309,7 @@ impl Parts<'_> {
         use ArmInsn::{ARM_INS_ADD, ARM_INS_ADDW, ARM_INS_MOV};
         let from_stack = self.register(0) == Some(FRAME_POINTER)
             && self.register(1) == Some(STACK_POINTER)
-            && self.is(&[ARM_INS_ADD, ARM_INS_ADDW, ARM_INS_MOV]);
+            && matches!(self.kind, ARM_INS_ADD | ARM_INS_ADDW | ARM_INS_MOV);
         from_stack.then(|| self.immediate().unwrap_or(0))
     }
 }

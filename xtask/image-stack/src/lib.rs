@@ -65,6 +65,8 @@ pub struct Bound {
     compared: (usize, usize),
     /// Functions that may be called by address.
     by_address: Vec<String>,
+    /// What panics in the image, with its callers; empty if nothing can.
+    pub panics: Vec<String>,
 }
 
 impl Bound {
@@ -107,18 +109,6 @@ pub fn of(image: &Path) -> Result<Bound> {
     bound(&bytes).with_context(|| format!("can't bound the stack of {}", image.display()))
 }
 
-/// What panics in an image, with its callers; empty if nothing can.
-///
-/// # Errors
-/// If the file is no image of which the calls are known.
-pub fn panics(image: &Path) -> Result<Vec<String>> {
-    let bytes =
-        fs::read(image).with_context(|| format!("can't read the image {}", image.display()))?;
-    let program = Program::parse(&bytes)?;
-    let frames = frame::frames(&program)?;
-    Ok(panics::panics(&program, &frames))
-}
-
 fn bound(bytes: &[u8]) -> Result<Bound> {
     let program = Program::parse(bytes)?;
     forbid_symbols(&program)?;
@@ -154,6 +144,7 @@ fn bound(bytes: &[u8]) -> Result<Bound> {
         levels,
         compared,
         by_address: program.taken.iter().filter_map(name).collect(),
+        panics: panics::panics(&program, &frames),
     })
 }
 

@@ -211,7 +211,6 @@ impl<'a> Program<'a> {
     }
 }
 
-/// Calls and jumps to a fixed address (ELF for the Arm architecture, table 5.6.1.6).
 /// Whether a section holds code alone: functions that run from RAM are among the variables.
 fn is_code<'a>(section: &impl ObjectSection<'a>) -> bool {
     let writable = matches!(
@@ -221,6 +220,7 @@ fn is_code<'a>(section: &impl ObjectSection<'a>) -> bool {
     section.kind() == SectionKind::Text && !writable
 }
 
+/// Calls and jumps to a fixed address (ELF for the Arm architecture, table 5.6.1.6).
 fn is_branch(flags: object::RelocationFlags) -> bool {
     use object::elf::{R_ARM_THM_JUMP24, R_ARM_THM_PC22};
     matches!(flags, object::RelocationFlags::Elf { r_type } if r_type == R_ARM_THM_PC22 || r_type == R_ARM_THM_JUMP24)

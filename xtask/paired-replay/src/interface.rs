@@ -6,41 +6,6 @@ use anyhow::{Context, Result, bail, ensure};
 
 use super::Step;
 
-/// Inputs in the order of a recorded trace, which is that of `hitch_quantities::Inputs::to_bytes`.
-pub const RECORDED: [&str; 18] = [
-    "lever",
-    "jog",
-    "rocker_angle",
-    "cylinder_pressure",
-    "pump_pressure",
-    "oil_temperature",
-    "supply",
-    "upper_limit",
-    "lowering_dial",
-    "engine_speed",
-    "lift_current",
-    "lower_current",
-    "step_time",
-    "second_angle",
-    "sensor_supply",
-    "reference",
-    "set_point",
-    "clock_ratio",
-];
-
-/// Contacts and their bits in the first word of a record.
-pub const RECORDED_BITS: [(&str, usize); 9] = [
-    ("up_released", 22),
-    ("down_released", 23),
-    ("transport_lock", 24),
-    ("hold", 25),
-    ("quick_lift", 26),
-    ("teach", 27),
-    ("consent", 28),
-    ("engage", 29),
-    ("enable_line_fault", 30),
-];
-
 /// A parameter of the calibration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
@@ -119,29 +84,6 @@ pub struct Layout {
     pub earlier: Order,
     /// Words of the present side.
     pub present: Order,
-    /// Places of outputs.
-    pub places: Places,
-}
-
-/// Places of outputs that the random steps follow or that are counted.
-#[derive(Clone, Debug)]
-pub struct Places {
-    /// Currents of the controller.
-    pub lift_current: Option<usize>,
-    /// The same.
-    pub lower_current: Option<usize>,
-    /// Currents that the envelope passed.
-    pub envelope_lift: Option<usize>,
-    /// The same.
-    pub envelope_lower: Option<usize>,
-    /// State of the controller.
-    pub state: Option<usize>,
-    /// Trip in the controller.
-    pub trip: Option<usize>,
-    /// Trip of the envelope.
-    pub envelope_trip: Option<usize>,
-    /// Whether a value of a parameter was accepted.
-    pub accepted: Option<usize>,
 }
 
 impl Layout {
@@ -184,25 +126,21 @@ impl Layout {
             })
             .filter(|common| common.min <= common.max)
             .collect();
-        let place = |name: &str| outputs.iter().position(|output| output == name);
         Ok(Self {
             alone: alone(earlier, present),
             earlier: Order::of(earlier, &inputs, &outputs, &parameters),
             present: Order::of(present, &inputs, &outputs, &parameters),
-            places: Places {
-                lift_current: place("lift_current"),
-                lower_current: place("lower_current"),
-                envelope_lift: place("envelope.lift_current"),
-                envelope_lower: place("envelope.lower_current"),
-                state: place("state"),
-                trip: place("trip"),
-                envelope_trip: place("envelope.trip"),
-                accepted: place("calibration.accepted"),
-            },
             inputs,
             outputs,
             parameters,
         })
+    }
+
+    /// The value of an output in an answer; 0 if not both sides have it.
+    #[must_use]
+    pub fn output(&self, answer: &[i32], name: &str) -> i32 {
+        let place = self.outputs.iter().position(|output| output == name);
+        place.map_or(0, |place| answer[place])
     }
 }
 

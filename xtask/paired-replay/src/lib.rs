@@ -5,9 +5,9 @@
 //!                                       +--> side of the present one    --+
 //! ```
 //!
-//! A side is a process that was built from the sources of its commit (`xtask/replay-side`), or the present code in this
-//! process (`side::Present`). A round steps [`MACHINES`] independent machines, so that the hitch of each can follow the
-//! answer of the earlier side at little cost. A machine whose answers differ is powered up again in both sides: the consequences
+//! A side is a process that was built from the sources of its commit (`xtask/replay-side`); in the tests also the present
+//! code in their process. A round steps [`MACHINES`] independent machines, so that the hitch of each can follow the answer
+//! of the earlier side at little cost. A machine whose answers differ is powered up again in both sides: the consequences
 //! of a difference are not listed.
 
 pub mod differences;
@@ -19,10 +19,11 @@ pub mod sources;
 pub mod trace;
 
 use anyhow::{Result, ensure};
-use replay_side::{ABSENT, Event};
+use hitch_quantities::Inputs;
+use replay_side::Event;
 
 use differences::{Comparison, Differences};
-use interface::{Interface, Layout};
+use interface::Layout;
 use random::RandomMachine;
 use side::Side;
 
@@ -38,12 +39,12 @@ pub struct Step {
     pub parameter: (usize, i32),
     /// Command to the envelope that is stepped beside the controller: lift, lower, mA, and flags.
     pub command: [i32; 3],
-    /// Values of the known inputs, in their order; [`ABSENT`] for a signal without a value.
+    /// Values of the known inputs, in their order; [`replay_side::ABSENT`] for a signal without a value.
     pub inputs: Vec<i32>,
 }
 
 /// The differences, and what the earlier side did, to judge the steps.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Replay {
     /// The differences.
     pub differences: Differences,
@@ -76,19 +77,18 @@ pub fn random(
     seed: u64,
     steps: u64,
 ) -> Result<Replay> {
-    let layout = Layout::of(earlier.interface(), present.interface())?;
+    let mut pair = Pair::new(earlier, present)?;
     let mut random = fastrand::Rng::with_seed(seed);
     let mut machines: Vec<RandomMachine> = (0..MACHINES)
-        .map(|index| RandomMachine::new(index, &layout))
+        .map(|index| RandomMachine::new(index, &pair.layout))
         .collect();
-    let mut pair = Pair::new(layout, earlier, present);
     for _ in 0..steps.div_ceil(MACHINES as u64) {
         let round: Vec<Step> = machines
             .iter_mut()
             .map(|machine| machine.step(&mut random))
             .collect();
-        pair.step(&round, |index, answer, differs| {
-            machines[index].follow(answer, differs);
+        pair.step(&round, |layout, index, answer, differs| {
+            machines[index].follow(layout, answer, differs);
         })?;
     }
     Ok(pair.replay)
@@ -99,43 +99,27 @@ pub fn random(
 /// # Errors
 /// If a side ends, or has no interface in common with the other, or the recording can't be read.
 pub fn recorded(earlier: &mut dyn Side, present: &mut dyn Side) -> Result<Replay> {
-    let layout = Layout::of(earlier.interface(), present.interface())?;
-    let names = layout.inputs.clone();
-    let mut pair = Pair::new(layout, earlier, present);
+    let mut pair = Pair::new(earlier, present)?;
     let mut event = Event::PowerUp;
     for record in trace::recorded()? {
+        let words = replay_side::words(&Inputs::from_bytes(&record));
+        // What only the earlier side has was not recorded.
+        let value = |name: &String| {
+            let place = replay_side::INPUTS.iter().position(|known| known == name);
+            place.map_or(0, |place| words[place])
+        };
         let step = Step {
             event,
             parameter: (0, 0),
             command: [0; 3],
-            inputs: names
-                .iter()
-                .map(|name| recorded_value(name, &record))
-                .collect(),
+            inputs: pair.layout.inputs.iter().map(value).collect(),
         };
         event = Event::None;
-        pair.step(&[step], |_, _, differs| {
+        pair.step(&[step], |_, _, _, differs| {
             event = if differs { Event::PowerUp } else { Event::None };
         })?;
     }
     Ok(pair.replay)
-}
-
-/// The value of an input in a record of the controller's link.
-fn recorded_value(name: &str, record: &[u8; hitch_quantities::signals::INPUT_BYTES]) -> i32 {
-    let (words, _) = record.as_chunks::<4>();
-    let first = i32::from_le_bytes(words[0]);
-    let bit = |bit: usize| (first >> bit) & 1;
-    if let Some(index) = interface::RECORDED.iter().position(|known| *known == name) {
-        return match bit(index) {
-            1 => i32::from_le_bytes(words[1 + index]),
-            _ => ABSENT,
-        };
-    }
-    let switch = interface::RECORDED_BITS
-        .iter()
-        .find(|(known, _)| *known == name);
-    switch.map_or(0, |(_, place)| bit(*place))
 }
 
 /// Two sides in lock step.
@@ -147,21 +131,22 @@ struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
-    fn new(layout: Layout, earlier: &'a mut dyn Side, present: &'a mut dyn Side) -> Self {
-        Self {
-            layout,
+    fn new(earlier: &'a mut dyn Side, present: &'a mut dyn Side) -> Result<Self> {
+        Ok(Self {
+            layout: Layout::of(earlier.interface(), present.interface())?,
             earlier,
             present,
-            replay: Replay {
-                differences: Differences::default(),
-                reached: Reached::default(),
-            },
-        }
+            replay: Replay::default(),
+        })
     }
 
     /// A round. `follow` gets the index of each machine, the answer of the earlier side in the order of the common
     /// outputs, and whether the sides differ.
-    fn step(&mut self, round: &[Step], mut follow: impl FnMut(usize, &[i32], bool)) -> Result<()> {
+    fn step(
+        &mut self,
+        round: &[Step],
+        mut follow: impl FnMut(&Layout, usize, &[i32], bool),
+    ) -> Result<()> {
         self.earlier.send(&self.layout.earlier.words(round))?;
         self.present.send(&self.layout.present.words(round))?;
         let mut answers = self.earlier.receive(round.len())?;
@@ -189,7 +174,7 @@ impl<'a> Pair<'a> {
                 );
             }
             self.replay.reached.add(&self.layout, answer);
-            follow(index, answer, differs);
+            follow(&self.layout, index, answer, differs);
         }
         Ok(())
     }
@@ -197,13 +182,12 @@ impl<'a> Pair<'a> {
 
 impl Reached {
     fn add(&mut self, layout: &Layout, answer: &[i32]) {
-        let at = |place: Option<usize>| place.map_or(0, |place| answer[place]);
-        let places = &layout.places;
+        let at = |name: &str| layout.output(answer, name);
         self.steps += 1;
-        self.moving += u64::from(at(places.lift_current) > 0 || at(places.lower_current) > 0);
-        self.trips |= 1 << (at(places.trip) & 63) | 1 << (at(places.envelope_trip) & 63);
-        self.states |= 1 << (at(places.state) & 63);
-        self.calibrations += u64::from(at(places.accepted) != 0);
+        self.moving += u64::from(at("lift_current") > 0 || at("lower_current") > 0);
+        self.trips |= 1 << (at("trip") & 63) | 1 << (at("envelope.trip") & 63);
+        self.states |= 1 << (at("state") & 63);
+        self.calibrations += u64::from(at("calibration.accepted") != 0);
     }
 
     /// The codes of a set of bits, without 0.
@@ -211,14 +195,6 @@ impl Reached {
     pub fn codes(bits: u64) -> Vec<u32> {
         (1..64).filter(|code| bits >> code & 1 == 1).collect()
     }
-}
-
-/// Checks that both sides can be compared at all.
-///
-/// # Errors
-/// If they have no output in common.
-pub fn layout(earlier: &Interface, present: &Interface) -> Result<Layout> {
-    Layout::of(earlier, present)
 }
 
 #[cfg(test)]

@@ -1,14 +1,16 @@
 //! Feeds the same steps to controller and envelope of an earlier commit and of the present one: `paired-replay --help`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use arm_build::workspace;
 use clap::Parser;
 use paired_replay::differences::{Differences, SECTION};
+use paired_replay::interface::Layout;
 use paired_replay::side::{Program, Side};
-use paired_replay::{Reached, Replay, layout, random, recorded, sources};
+use paired_replay::{Reached, Replay, random, recorded, sources};
 
 /// Page that explains differences.
 const PAGE: &str = "docs/safety.md";
@@ -44,13 +46,9 @@ fn main() -> ExitCode {
 
 /// Whether there is no difference, or each is explained.
 fn run(arguments: &Arguments) -> Result<bool> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .ancestors()
-        .nth(2)
-        .context("the workspace has no root")?;
-    let commit = sources::commit(root, &arguments.against)?;
-    let earlier = sources::build_commit(root, &commit, &arguments.folder)?;
-    let present = sources::build_present(root, &arguments.folder)?;
+    let commit = sources::commit(&arguments.against)?;
+    let earlier = sources::build_commit(&commit, &arguments.folder)?;
+    let present = sources::build(&workspace::root(), &arguments.folder.join("present"))?;
     let start = || -> Result<(Program, Program)> {
         Ok((
             Program::start(&commit, &earlier)?,
@@ -59,7 +57,7 @@ fn run(arguments: &Arguments) -> Result<bool> {
     };
 
     let (mut one, mut other) = start()?;
-    for line in layout(one.interface(), other.interface())?.alone {
+    for line in Layout::of(one.interface(), other.interface())?.alone {
         println!("{line}");
     }
     let replay = recorded(&mut one, &mut other)?;
@@ -82,7 +80,8 @@ fn run(arguments: &Arguments) -> Result<bool> {
     );
     differences.merge(found);
 
-    let page = std::fs::read_to_string(root.join(PAGE)).with_context(|| PAGE.to_owned())?;
+    let page =
+        std::fs::read_to_string(workspace::root().join(PAGE)).with_context(|| PAGE.to_owned())?;
     Ok(report(&differences, &page, &commit))
 }
 

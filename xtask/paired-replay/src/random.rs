@@ -5,47 +5,31 @@ use replay_side::{ABSENT, Event};
 
 use super::Step;
 use super::hitch::Hitch;
-use super::interface::{Layout, Parameter, Places};
+use super::interface::{Layout, Parameter};
 
-/// How a signal behaves: name, value of a healthy machine, range of healthy values, and whether it adds to what the
-/// hitch measures.
-struct Kind {
-    name: &'static str,
-    healthy: i32,
-    range: (i32, i32),
-}
-
-const fn kind(name: &'static str, healthy: i32, min: i32, max: i32) -> Kind {
-    let range = (min, max);
-    Kind {
-        name,
-        healthy,
-        range,
-    }
-}
-
-/// The known signals; a signal of another name is 0 or 1. Angles and currents: what is added to the hitch's.
-const KINDS: [Kind; 19] = [
-    kind("lever", 90_000, 42_000, 138_000),
-    kind("jog", ABSENT, -20_000, 20_000),
-    kind("rocker_angle", 0, -300, 300),
-    kind("cylinder_pressure", 60_000, 0, 180_000),
-    kind("pump_pressure", 80_000, 0, 200_000),
-    kind("oil_temperature", 50_000, -20_000, 100_000),
-    kind("supply", 13_000, 10_000, 15_500),
-    kind("upper_limit", ABSENT, 60_000, 138_000),
-    kind("lowering_dial", ABSENT, 0, 1_000),
-    kind("engine_speed", 1_500, 700, 2_400),
-    kind("lift_current", 0, -20, 20),
-    kind("lower_current", 0, -20, 20),
-    kind("step_time", 1_000, 990, 1_010),
-    kind("second_angle", ABSENT, -300, 300),
-    kind("sensor_supply", 5_000, 4_900, 5_100),
-    kind("reference", 1_000, 990, 1_010),
-    kind("set_point", ABSENT, 50_000, 120_000),
-    kind("clock_ratio", 1_000, 990, 1_010),
+/// The known signals: name, value of a healthy machine, range of healthy values; a signal of another name is 0 or 1. Angles
+/// and currents: what is added to the hitch's.
+const KINDS: [(&str, i32, (i32, i32)); 19] = [
+    ("lever", 90_000, (42_000, 138_000)),
+    ("jog", ABSENT, (-20_000, 20_000)),
+    ("rocker_angle", 0, (-300, 300)),
+    ("cylinder_pressure", 60_000, (0, 180_000)),
+    ("pump_pressure", 80_000, (0, 200_000)),
+    ("oil_temperature", 50_000, (-20_000, 100_000)),
+    ("supply", 13_000, (10_000, 15_500)),
+    ("upper_limit", ABSENT, (60_000, 138_000)),
+    ("lowering_dial", ABSENT, (0, 1_000)),
+    ("engine_speed", 1_500, (700, 2_400)),
+    ("lift_current", 0, (-20, 20)),
+    ("lower_current", 0, (-20, 20)),
+    ("step_time", 1_000, (990, 1_010)),
+    ("second_angle", ABSENT, (-300, 300)),
+    ("sensor_supply", 5_000, (4_900, 5_100)),
+    ("reference", 1_000, (990, 1_010)),
+    ("set_point", ABSENT, (50_000, 120_000)),
+    ("clock_ratio", 1_000, (990, 1_010)),
     // A fault of it is final: it is left to the failures.
-    kind("enable_line_fault", 0, 0, 0),
+    ("enable_line_fault", 0, (0, 0)),
 ];
 /// Contacts that are closed in a healthy machine.
 const CLOSED: [&str; 2] = ["up_released", "down_released"];
@@ -81,13 +65,13 @@ struct Signal {
 
 impl Signal {
     fn named(name: &str) -> Self {
-        let known = KINDS.iter().find(|kind| kind.name == name);
-        let switch = kind("", i32::from(CLOSED.contains(&name)), 0, 1);
-        let kind = known.unwrap_or(&switch);
+        let known = KINDS.into_iter().find(|(known, ..)| *known == name);
+        let switch = (name, i32::from(CLOSED.contains(&name)), (0, 1));
+        let (_, healthy, range) = known.unwrap_or(switch);
         Self {
-            healthy: kind.healthy,
-            range: kind.range,
-            value: kind.healthy,
+            healthy,
+            range,
+            value: healthy,
             behaviour: Behaviour::Rest,
             left: 0,
         }
@@ -149,7 +133,6 @@ impl Signal {
 pub struct RandomMachine {
     signals: Vec<Signal>,
     parameters: Vec<Parameter>,
-    places: Places,
     /// Places of what the hitch measures: angle, second angle, currents.
     angles: [Option<usize>; 2],
     currents: [Option<usize>; 2],
@@ -175,7 +158,6 @@ impl RandomMachine {
         Self {
             signals: signals.collect(),
             parameters: layout.parameters.clone(),
-            places: layout.places.clone(),
             angles: [place("rocker_angle"), place("second_angle")],
             currents: [place("lift_current"), place("lower_current")],
             hitch: Hitch::at(90_000.0),
@@ -265,12 +247,11 @@ impl RandomMachine {
     }
 
     /// Takes the answer of the earlier side; if the other one `differs`, the machine is powered up.
-    pub fn follow(&mut self, answer: &[i32], differs: bool) {
-        let at = |place: Option<usize>| place.map_or(0, |place| answer[place]);
-        let places = &self.places;
-        self.answered = [at(places.lift_current), at(places.lower_current)];
+    pub fn follow(&mut self, layout: &Layout, answer: &[i32], differs: bool) {
+        let both = |names: [&str; 2]| names.map(|name| layout.output(answer, name));
+        self.answered = both(["lift_current", "lower_current"]);
         let [lift, lower] = if self.follows_envelope {
-            [at(places.envelope_lift), at(places.envelope_lower)]
+            both(["envelope.lift_current", "envelope.lower_current"])
         } else {
             self.answered
         };

@@ -1,11 +1,10 @@
-//! One of the two commits: a process, or the present code in this process.
+//! One of the two commits, as a process.
 
 use std::io::{BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use anyhow::{Context, Result};
-use replay_side::Machines;
 
 use super::interface::Interface;
 
@@ -107,41 +106,5 @@ impl Side for Program {
         received.with_context(|| self.ended())?;
         let (words, _) = self.bytes.as_chunks::<4>();
         Ok(words.iter().map(|word| i32::from_le_bytes(*word)).collect())
-    }
-}
-
-/// The present code in this process.
-pub struct Present {
-    interface: Interface,
-    machines: Machines,
-    answers: Vec<i32>,
-}
-
-impl Present {
-    /// Machines that were just powered up.
-    ///
-    /// # Errors
-    /// If the description of the interface can't be read.
-    pub fn new() -> Result<Self> {
-        Ok(Self {
-            interface: Interface::read(&mut replay_side::description().as_bytes())?,
-            machines: Machines::default(),
-            answers: Vec::new(),
-        })
-    }
-}
-
-impl Side for Present {
-    fn interface(&self) -> &Interface {
-        &self.interface
-    }
-
-    fn send(&mut self, steps: &[i32]) -> Result<()> {
-        self.machines.round(steps, &mut self.answers);
-        Ok(())
-    }
-
-    fn receive(&mut self, _machines: usize) -> Result<Vec<i32>> {
-        Ok(self.answers.clone())
     }
 }

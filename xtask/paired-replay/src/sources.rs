@@ -2,48 +2,37 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
+use arm_build::{process, workspace};
 
 /// The crate of a side, from the root of the workspace. The present one is built with the sources of each commit.
 const SIDE: &str = "xtask/replay-side";
 const MEMBERS: &str = "members = [";
 
-/// The full name of a commit of the repository at `root`.
+/// The full name of a commit of this repository.
 ///
 /// # Errors
 /// If there is no such commit.
-pub fn commit(root: &Path, name: &str) -> Result<String> {
+pub fn commit(name: &str) -> Result<String> {
     let revision = format!("{name}^{{commit}}");
-    let output = Command::new("git")
-        .args([
-            "rev-parse",
-            "--verify",
-            "--quiet",
-            "--end-of-options",
-            &revision,
-        ])
-        .current_dir(root)
-        .output()
-        .context("can't start git")?;
-    ensure!(
-        output.status.success(),
-        "`{name}` is no commit of this repository; `git log --oneline` lists them"
-    );
-    Ok(String::from_utf8(output.stdout)?.trim().to_owned())
+    let options = ["rev-parse", "--verify", "--quiet", "--end-of-options"];
+    let named = process::output(process::command("git", &options).arg(revision));
+    named.with_context(|| {
+        format!("`{name}` is no commit of this repository; `git log --oneline` lists them")
+    })
 }
 
 /// Builds the side of a commit below `folder`; the program.
 ///
 /// # Errors
 /// If the sources can't be extracted, or do not compile with the crate of the side.
-pub fn build_commit(root: &Path, commit: &str, folder: &Path) -> Result<PathBuf> {
+pub fn build_commit(commit: &str, folder: &Path) -> Result<PathBuf> {
     let sources = folder.join(commit);
     if !sources.join("Cargo.toml").exists() {
-        extract(root, commit, &sources)?;
+        extract(commit, &sources)?;
     }
-    let (from, to) = (root.join(SIDE), sources.join(SIDE));
+    let (from, to) = (workspace::root().join(SIDE), sources.join(SIDE));
     fs::create_dir_all(to.join("src"))?;
     for file in ["Cargo.toml", "build.rs"] {
         copy(&from.join(file), &to.join(file))?;
@@ -66,14 +55,6 @@ pub fn build_commit(root: &Path, commit: &str, folder: &Path) -> Result<PathBuf>
         .with_context(|| format!("commit {commit} has another interface than {SIDE} expects"))
 }
 
-/// Builds the side of the present sources below `folder`; the program.
-///
-/// # Errors
-/// If they don't compile.
-pub fn build_present(root: &Path, folder: &Path) -> Result<PathBuf> {
-    build(root, &folder.join("present"))
-}
-
 fn copy(from: &Path, to: &Path) -> Result<()> {
     // What has not changed keeps its time, so that it is not compiled again.
     let text = fs::read(from).with_context(|| from.display().to_string())?;
@@ -84,48 +65,32 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
 }
 
 /// Writes the sources of a commit to a new folder.
-fn extract(root: &Path, commit: &str, folder: &Path) -> Result<()> {
+fn extract(commit: &str, folder: &Path) -> Result<()> {
     let parts = folder.with_extension("partial");
     let _ = fs::remove_dir_all(&parts);
     fs::create_dir_all(&parts).with_context(|| parts.display().to_string())?;
     let archive = folder.with_extension("tar");
-    run(Command::new("git")
-        .args(["archive", "--format=tar", "--output"])
-        .arg(&archive)
-        .arg(commit)
-        .current_dir(root))?;
-    run(Command::new("tar")
-        .arg("-xf")
-        .arg(&archive)
-        .arg("-C")
-        .arg(&parts))?;
+    let mut pack = process::command("git", &["archive", "--format=tar", "--output"]);
+    process::run(pack.arg(&archive).arg(commit))?;
+    let mut unpack = process::command("tar", &["-xf"]);
+    process::run(unpack.arg(&archive).arg("-C").arg(&parts))?;
     fs::remove_file(&archive)?;
     fs::rename(&parts, folder).with_context(|| folder.display().to_string())
 }
 
-/// Builds a side. Arithmetic that overflows ends it, as it does in the images.
-fn build(sources: &Path, target: &Path) -> Result<PathBuf> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    run(Command::new(cargo)
-        .args([
-            "build",
-            "--quiet",
-            "--release",
-            "--package",
-            "replay-side",
-            "--target-dir",
-        ])
+/// Builds a side; the program. Arithmetic that overflows ends it, as it does in the images.
+///
+/// # Errors
+/// If the sources don't compile.
+pub fn build(sources: &Path, target: &Path) -> Result<PathBuf> {
+    let options = ["build", "--quiet", "--release", "--package", "replay-side"];
+    let mut command = process::command(workspace::cargo(), &options);
+    command
+        .arg("--target-dir")
         .arg(target)
         .env("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true")
         .env("CARGO_PROFILE_RELEASE_LTO", "off")
-        .current_dir(sources))?;
+        .current_dir(sources);
+    process::run(&mut command)?;
     Ok(target.join("release/replay-side"))
-}
-
-fn run(command: &mut Command) -> Result<()> {
-    let status = command
-        .status()
-        .with_context(|| format!("can't start {command:?}"))?;
-    ensure!(status.success(), "{command:?} failed: {status}");
-    Ok(())
 }

@@ -1,12 +1,48 @@
 //! The comparator finds an injected difference, and nothing else.
 
-use super::side::{Present, Side};
+use super::interface::Interface;
+use replay_side::Machines;
+
+use super::side::Side;
 use super::*;
 
 const SEED: u64 = 7;
 const STEPS: u64 = 200_000;
 /// Draws in which the hitch has to move.
 const DRAWS: u64 = 4;
+
+/// The present code in this process.
+struct Present {
+    interface: Interface,
+    machines: Machines,
+    answers: Vec<i32>,
+}
+
+impl Present {
+    /// Machines that were just powered up.
+    fn new() -> Result<Self> {
+        Ok(Self {
+            interface: Interface::read(&mut replay_side::description().as_bytes())?,
+            machines: Machines::default(),
+            answers: Vec::new(),
+        })
+    }
+}
+
+impl Side for Present {
+    fn interface(&self) -> &Interface {
+        &self.interface
+    }
+
+    fn send(&mut self, steps: &[i32]) -> Result<()> {
+        self.machines.round(steps, &mut self.answers);
+        Ok(())
+    }
+
+    fn receive(&mut self, _machines: usize) -> Result<Vec<i32>> {
+        Ok(self.answers.clone())
+    }
+}
 
 /// The present code, with 1 mA more of an output once this output is large.
 struct Damaged {

@@ -11,7 +11,7 @@ mod interface;
 mod machine;
 mod word;
 
-pub use interface::{INPUTS, OUTPUTS};
+pub use interface::{INPUTS, OUTPUTS, words};
 pub use machine::{ENVELOPE_OUTPUTS, Event, HEAD_WORDS, Machines};
 pub use word::ABSENT;
 

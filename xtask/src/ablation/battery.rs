@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use anyhow::{Context, Result, bail};
-use arm_build::{process, workspace};
+use arm_build::{process, programs, workspace};
 
 /// Environment variable that names the heuristic to remove.
 pub const SWITCH: &str = "HITCH_ABLATION";
@@ -89,12 +89,7 @@ impl Battery {
         let mut command = process::command(workspace::cargo(), what);
         command
             .arg(name)
-            .args([
-                "--package",
-                "host-tests",
-                "--message-format",
-                "json-render-diagnostics",
-            ])
+            .args(["--package", "host-tests"])
             .current_dir(source)
             .env("CARGO_TARGET_DIR", target)
             // Link time optimisation takes minutes and changes no rate.
@@ -102,18 +97,11 @@ impl Battery {
             .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16")
             .env("CARGO_PROFILE_BENCH_LTO", "off")
             .env("CARGO_PROFILE_BENCH_CODEGEN_UNITS", "16");
-        process::announce(&command);
-        let output = command.stderr(Stdio::inherit()).output()?;
-        let messages = String::from_utf8(output.stdout)?;
-        // The last artefact of that name is the program.
-        let executable = messages
-            .lines()
-            .filter(|line| line.contains(&format!("\"name\":\"{name}\"")))
-            .filter_map(|line| Some(line.split_once("\"executable\":\"")?.1.split_once('"')?.0))
-            .next_back();
-        executable
-            .map(PathBuf::from)
-            .context("the benchmark was not built; see above")
+        // The last program of that name.
+        let name = name.replace('-', "_");
+        let mut built = programs::build(&mut command)?.into_iter();
+        let found = built.rfind(|program| program.name == name);
+        Ok(found.context("cargo names no benchmark")?.path)
     }
 
     /// Runs the benchmark without one heuristic, or with all.

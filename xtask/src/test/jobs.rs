@@ -14,9 +14,10 @@ use std::thread;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
+use arm_build::programs::Program;
 use arm_build::workspace;
 
-use super::programs::{Built, Program};
+use super::programs::{self, Built};
 
 /// Recorded times, relative to the workspace's root.
 const RECORD: &str = "xtask/test-seconds.txt";
@@ -110,7 +111,7 @@ fn of_program(program: &Program) -> Result<Vec<Job>> {
     let package = program.folder.strip_prefix(workspace::root());
     let package = package.unwrap_or(&program.folder).display();
     let mut modules: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for test in program.list()? {
+    for test in programs::list(program)? {
         let module = test.rsplit_once("::").map_or("", |(module, _)| module);
         modules.entry(module.to_owned()).or_default().push(test);
     }
@@ -164,7 +165,7 @@ impl Job {
     /// Runs it, and prints its output.
     fn run(&self, variables: &[(&str, PathBuf)]) -> Result<Done> {
         let started = Instant::now();
-        let mut command = self.program.command();
+        let mut command = programs::command(&self.program);
         command
             .args([
                 "--include-ignored",
@@ -277,7 +278,7 @@ mod tests {
     #[test]
     fn every_job_runs_once_in_any_number_of_lanes() {
         // The program of this test has this test; a job of another module ends at once.
-        let program = Program::of_this_test();
+        let program = programs::of_this_test();
         let job = |name: &str| Job {
             program: program.clone(),
             name: name.to_owned(),
@@ -299,7 +300,7 @@ mod tests {
 
     #[test]
     fn a_job_that_ends_without_a_closing_line_has_failed() {
-        let mut program = Program::of_this_test();
+        let mut program = programs::of_this_test();
         program.path = "/bin/false".into();
         let job = Job {
             program,

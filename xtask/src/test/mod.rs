@@ -40,8 +40,8 @@ impl Tests {
     pub fn build(way: Option<Way>, timings: &mut Timings) -> Result<Self> {
         let way = timings.measured("set-up of toolchain, emulator and browser", || {
             let way = setup::toolchain(way, ARM)?;
-            setup::emulator()?;
-            setup::browser()?;
+            setup::EMULATOR.find()?;
+            setup::BROWSER.find()?;
             Ok(way)
         })?;
         let options: &[&str] = if timings.asked() { &["--timings"] } else { &[] };

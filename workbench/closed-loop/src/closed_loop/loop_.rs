@@ -27,6 +27,20 @@ pub struct Sample {
     pub outputs: Outputs,
 }
 
+impl Sample {
+    /// Current that the controller asks of the lift coil, A.
+    #[must_use]
+    pub fn lift_current_a(&self) -> f64 {
+        f64::from(self.outputs.lift_current.0) * 1e-3
+    }
+
+    /// Current that the controller asks of the lowering coil, A.
+    #[must_use]
+    pub fn lower_current_a(&self) -> f64 {
+        f64::from(self.outputs.lower_current.0) * 1e-3
+    }
+}
+
 /// Plant, coils, instruments and controller.
 pub struct ClosedLoop<'m> {
     plant: DrivenPlant<'m>,

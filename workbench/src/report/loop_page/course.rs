@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use super::worst::{FIGURES, Figure};
 use crate::closed_loop::show::name;
 use crate::closed_loop::{LoopRun, MoveResult, MoveTrace};
-use crate::report::chart::{Chart, Line, Stroke};
+use crate::report::chart::{Chart, Stroke};
 use crate::report::drawn::drawn;
 use crate::text::known;
 use hitch_closed_loop::Sample;
@@ -53,22 +53,13 @@ fn course(result: &MoveResult, trace: &MoveTrace) -> Markup {
     let line = |name: &str, stroke, value: fn(&Sample) -> f64| {
         (name.to_owned(), stroke, trace.points(end_s, value))
     };
-    let chart = |caption: &str, y_title, lines: [Line; 2]| Chart {
-        caption: caption.to_owned(),
-        axes: ["time, s", y_title],
-        lines: lines.into(),
-    };
     let angles = [
         line("set point", Stroke::Measured, |sample| sample.lever_deg),
         line("hitch", Stroke::After, |sample| sample.angle_deg),
     ];
     let currents = [
-        line("lift coil", Stroke::Lift, |sample| {
-            f64::from(sample.outputs.lift_current.0) * 1e-3
-        }),
-        line("lowering coil", Stroke::Lower, |sample| {
-            f64::from(sample.outputs.lower_current.0) * 1e-3
-        }),
+        line("lift coil", Stroke::Lift, Sample::lift_current_a),
+        line("lowering coil", Stroke::Lower, Sample::lower_current_a),
     ];
     let pressures = [
         line("pump", Stroke::Pump, |sample| sample.pump_pressure_bar),
@@ -77,9 +68,9 @@ fn course(result: &MoveResult, trace: &MoveTrace) -> Markup {
         }),
     ];
     let charts = [
-        chart("Rocker angle", "angle, deg", angles),
-        chart("Coil currents", "current, A", currents),
-        chart("Pressures of pump and cylinder", "pressure, bar", pressures),
+        Chart::over_time("Rocker angle", "angle, deg", angles),
+        Chart::over_time("Coil currents", "current, A", currents),
+        Chart::over_time("Pressures of pump and cylinder", "pressure, bar", pressures),
     ];
     let label = format!("Angle, currents and pressures over time, {}", name(result));
     html! {

@@ -101,9 +101,5 @@ fn chart(driven: &[Driven], names: &[String]) -> Chart<'static> {
     let caption = driven.first().map_or_else(String::new, |(result, _)| {
         format!("{:.1} to {:.1} degrees", result.from_deg, result.to_deg)
     });
-    Chart {
-        caption,
-        axes: ["time, s", "angle, deg"],
-        lines: set_point.into_iter().chain(hitches).collect(),
-    }
+    Chart::over_time(caption, "angle, deg", set_point.into_iter().chain(hitches))
 }
