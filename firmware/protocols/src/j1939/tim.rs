@@ -377,9 +377,11 @@ impl Tim {
             Reply::Assignment(count, [a, b, c, d, e, f]) => [ASSIGNMENT, count, a, b, c, d, e, f],
             Reply::AssignmentStatus => match self.client() {
                 Some(name) if self.is_assigned => {
-                    let head = [ASSIGNMENT_STATUS, 0, 1].into_iter();
-                    let status = head.chain(name.to_bytes()).chain([1, REAR_HITCH]);
-                    return Said::Message(status.collect());
+                    // Its length is that of the message, so that no check for room is left.
+                    let [a, b, c, d, e, f, g, h] = name.to_bytes();
+                    let [kind, code, count] = [ASSIGNMENT_STATUS, 0, 1];
+                    let status = [kind, code, count, a, b, c, d, e, f, g, h, 1, REAR_HITCH];
+                    return Said::Message(status.into_iter().collect());
                 }
                 _ => [ASSIGNMENT_STATUS, 1, REAR_HITCH, 0, NO, NO, NO, NO],
             },
