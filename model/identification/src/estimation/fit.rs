@@ -166,15 +166,9 @@ fn coarse_descent(problem: Problem<'_>, weights: &Weights, start: Estimate) -> E
     descend(problem, &coarse, start, moves, COARSE_ITERATIONS).estimate
 }
 
-/// A short fit under given weights that decides whether an effect deserves a full fit. If `far`, it starts with the
-/// coarse weights.
+/// A short fit under given weights that decides whether an effect deserves a full fit.
 #[must_use]
-pub fn short_fit(problem: Problem<'_>, weights: &Weights, start: Estimate, far: bool) -> Descent {
-    let start = if far {
-        coarse_descent(problem, weights, start)
-    } else {
-        start
-    };
+pub fn short_fit(problem: Problem<'_>, weights: &Weights, start: Estimate) -> Descent {
     descend(problem, weights, start, Moves::All, COARSE_ITERATIONS)
 }
 

@@ -10,8 +10,7 @@
 use hitch_plant::SizeResponse;
 
 use crate::data::problem::Problem;
-use crate::estimate::Step;
-use crate::estimate::{Estimate, Shared};
+use crate::estimate::{Estimate, Step};
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::residual_columns::{huber_residuals, square_sum};
 use crate::estimation::slow_columns::SlowColumns;
@@ -164,12 +163,12 @@ impl LeastSquares<'_> {
 
     /// The first step, by increasing damping, that reduces the cost.
     fn step(&self, jacobian: &Jacobian, point: &Point, damping: f64) -> Option<AcceptedStep> {
-        // The slope of a switching effect says little about the result of a finite step, and spoils the steps of all
-        // others.
+        // The slope of a switching effect says little about the result of a finite step.
         let is_switching = |shared| point.estimate.size_response(shared) == SizeResponse::Switching;
         let has_switching = jacobian.shared.iter().any(|&shared| is_switching(shared));
-        let better = |held: &dyn Fn(Shared) -> bool, damping: f64| {
-            let step = jacobian.step(&point.estimate, damping, held)?;
+        let is_held = |shared| self.moves == Moves::AllButSwitching && is_switching(shared);
+        dampings(damping).find_map(|damping| {
+            let step = jacobian.step(&point.estimate, damping, is_held)?;
             let moved = point.estimate.moved(&jacobian.shared, &step);
             let step = moved.step_from(&point.estimate, &jacobian.shared);
             let predicted = point.cost - jacobian.predicted_square_sum(&step) - moved.prior_cost();
@@ -181,15 +180,7 @@ impl LeastSquares<'_> {
                 predicted,
                 has_switching,
             })
-        };
-        let all = || dampings(damping).find_map(|damping| better(&|_| false, damping));
-        let all_but_switching =
-            || dampings(FIRST_DAMPING).find_map(|damping| better(&is_switching, damping));
-        match self.moves {
-            _ if !has_switching => all(),
-            Moves::All => all().or_else(all_but_switching),
-            Moves::AllButSwitching => all_but_switching(),
-        }
+        })
     }
 }
 

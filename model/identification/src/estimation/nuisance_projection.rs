@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::estimate::{Estimate, Shared, Step};
+use crate::estimate::Estimate;
 use crate::estimation::bounded_minimum::minimum_within;
 use crate::estimation::jacobian::{Jacobian, RunJacobian};
 use crate::estimation::residual_columns::{dot, square_sum, subtract};
@@ -168,22 +168,6 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
     #[must_use]
     pub fn cost_after(&self, residuals: &[Vec<f64>]) -> f64 {
         self.cost(square_sum(residuals), &self.products(residuals))
-    }
-
-    /// An estimate with residuals `residuals`, its clocks and free constants re-optimised to first order.
-    #[must_use]
-    pub fn synchronised(&self, estimate: &Estimate, residuals: &[Vec<f64>]) -> Estimate {
-        let pull = self.pull(&self.products(residuals)) + &self.priors;
-        let shares = self.shares(&pull);
-        let columns = self.kept.iter().map(|&kept| self.jacobian().shared[kept]);
-        let moves = columns.zip(shares.iter().copied());
-        let (parameters, shares): (Vec<Shared>, Vec<f64>) =
-            moves.filter(|(shared, _)| shared.has_prior()).unzip();
-        let step = Step {
-            shared: DVector::from_vec(shares),
-            loads: Vec::new(),
-        };
-        estimate.moved(&parameters, &step)
     }
 
     /// [`NuisanceProjection::cost_after`] of the projection's own residuals.

@@ -93,7 +93,7 @@ impl Trial<'_> {
     }
 
     fn short_fit(self, start: Estimate) -> Fit {
-        let found = short_fit(self.problem, self.weights, start, false);
+        let found = short_fit(self.problem, self.weights, start);
         evaluate_weighted(self.problem, found.estimate, self.weights.clone())
     }
 }

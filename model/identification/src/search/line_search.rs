@@ -19,9 +19,6 @@ const DISTANCES_STEPPED: [f64; 2] = [1.0, 0.1];
 const DISTANCES_LOCATED: [f64; 2] = [0.15, 0.015];
 const TO_EITHER_SIDE: i32 = 10;
 
-/// Largest distance of a shape parameter from the upper end of its range, as a share, at which the end is tried too.
-const NEARLY_WHOLE: f64 = 0.01;
-
 /// The better of a fit and of the fits from nearby sizes of an effect, by its index, unless its cost is smooth over its size.
 pub(crate) fn line_searched(problem: Problem<'_>, fit: Fit, index: usize) -> Fit {
     let added = &fit.estimate.effects[index];
@@ -30,29 +27,15 @@ pub(crate) fn line_searched(problem: Problem<'_>, fit: Fit, index: usize) -> Fit
     } else {
         &[]
     };
-    let along = |fit: Fit| {
-        reaches.iter().fold(fit, |fit, &reach| {
-            let nearby = nearby(problem, &fit, index, reach);
-            if nearby.cost < fit.cost {
-                let refined = refine(problem, nearby.estimate.clone());
-                better(better(fit, nearby), refined)
-            } else {
-                fit
-            }
-        })
-    };
-    let whole = whole(added).zip(reaches.first()).map(|(whole, &widest)| {
-        let mut estimate = fit.estimate.clone();
-        estimate.effects[index] = whole;
-        let whole = evaluate_weighted(problem, estimate, fit.weights.clone());
-        let nearby = nearby(problem, &whole, index, widest);
-        along(refine(problem, better(whole, nearby).estimate))
-    });
-    let fit = along(fit);
-    match whole {
-        Some(whole) => better(fit, whole),
-        None => fit,
-    }
+    reaches.iter().fold(fit, |fit, &reach| {
+        let nearby = nearby(problem, &fit, index, reach);
+        if nearby.cost < fit.cost {
+            let refined = refine(problem, nearby.estimate.clone());
+            better(nearby, refined)
+        } else {
+            fit
+        }
+    })
 }
 
 /// The one with the smaller cost.
@@ -83,19 +66,6 @@ fn nearby(problem: Problem<'_>, fit: &Fit, index: usize, reach: f64) -> Fit {
         })
         .min_by(|a, b| a.cost.total_cmp(&b.cost))
         .expect("there are sizes")
-}
-
-/// A switching effect with its shape at the end of the range (a jump over the whole band), if it almost is there: the
-/// narrow minimum lies at the end, and slopes stop short of it.
-fn whole(added: &AddedEffect) -> Option<AddedEffect> {
-    let shape = added.effect.parameters().get(1)?;
-    let short = shape.high - added.values[1];
-    let jumps = added.effect.size_response() == SizeResponse::Switching;
-    (jumps && short > 0.0 && short < NEARLY_WHOLE).then(|| {
-        let mut whole = added.clone();
-        whole.values[1] = shape.high;
-        whole
-    })
 }
 
 /// An effect at a multiple of its size. A stepped effect keeps the product of its size and the distance of its shape

@@ -7,7 +7,7 @@ use crate::estimation::fit::Fit;
 use crate::search::best_subset::{MOST, Subset, best_subsets, fitted};
 use crate::search::coarse_view::Coarse;
 use crate::search::dictionary::Dictionary;
-use crate::search::dictionary_entry::{Entry, Kind, with_entries};
+use crate::search::dictionary_entry::{Entry, with_entries};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{EffectSet, Refitted, key};
 
@@ -16,7 +16,7 @@ const RANKED: usize = 40;
 const FITTED: usize = 12;
 
 /// Starts of one set of effects whose cost has many local minima.
-pub(crate) const LOCAL_MINIMA: usize = 2;
+const LOCAL_MINIMA: usize = 2;
 
 /// Most starts of a set with an effect.
 pub(crate) fn most_starts(effect: &dyn Effect) -> usize {
@@ -26,10 +26,6 @@ pub(crate) fn most_starts(effect: &dyn Effect) -> usize {
         1
     }
 }
-
-/// Relative error of a secant's prediction, as a share of the predicted cost reduction or of that of a replaced effect.
-/// A further effect that predicts less is left to the next dictionary.
-const INEXACT: f64 = 0.04;
 
 /// A subset is fitted if its cost exceeds the best one by at most this share of what the two do not have in common, or
 /// by at most this likelihood ratio.
@@ -66,21 +62,10 @@ pub(crate) fn starts(
     let left = dictionary.left(lowest);
     let variance = lowest.cost / seen.weights.count() as f64;
     let penalty = Penalty::new(few, present.weights.count(), variance, &left);
-    let whole = with_all_present(dictionary);
     let predicted_cost = |subset: &Subset| {
-        let explained = (seen.cost - lowest.cost).max(apart(dictionary, subset, &whole));
-        let inexact = INEXACT * explained.max(0.0);
-        let members = subset
-            .columns
-            .iter()
-            .map(|&column| &dictionary.entries[column]);
-        let prices = members.map(|entry| {
-            let own = penalty.of(&entry.added, entry.parameters());
-            match entry.kind {
-                Kind::Present(_) => own,
-                Kind::New | Kind::Change(_) => own.max(inexact),
-            }
-        });
+        let members = subset.columns.iter();
+        let members = members.map(|&column| &dictionary.entries[column]);
+        let prices = members.map(|entry| penalty.of(&entry.added, entry.parameters()));
         subset.cost + prices.sum::<f64>()
     };
     let candidates = sizes.iter().flat_map(|subsets| subsets.iter().take(RANKED));
@@ -112,14 +97,6 @@ pub(crate) fn starts(
         }
     }
     Starts { estimates, penalty }
-}
-
-/// The subset of all present effects.
-fn with_all_present(dictionary: &Dictionary) -> Subset {
-    let columns = dictionary.entries.iter().enumerate();
-    let present = columns.filter(|(_, entry)| matches!(entry.kind, Kind::Present(_)));
-    let present = present.map(|(column, _)| column).collect();
-    fitted(&dictionary.gram, &dictionary.entries, present)
 }
 
 /// Cost reduction of the leading subset beyond that of its intersection with another.

@@ -2,32 +2,23 @@
 
 use rayon::prelude::*;
 
-use crate::data::clocks::Clocks;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate, evaluate_weighted, refine, short_fit};
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::least_squares::Descent;
-use crate::estimation::residual_columns::{huber_residuals, square_sum};
+use crate::estimation::residual_columns::huber_residuals;
 use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
 use crate::search::line_search::line_searched;
 use crate::search::options::Options;
 use crate::search::projections::Projections;
-use crate::search::promising_subsets::{CLOSE, LOCAL_MINIMA, NEAR};
+use crate::search::promising_subsets::{CLOSE, NEAR};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Refitted, key, key_of};
 
 /// Most starts that get a short fit, and short fits that are refined.
 const SHORT_FITS: usize = 5;
 const REFINED: usize = 3;
-
-/// Root mean square error, in sigma, above which a short fit may be in a local minimum, so that it is repeated with the
-/// coarse weights first.
-const POOR_ERROR: f64 = 2.0;
-
-/// Factor over the least cost up to which a set with rough effects stays a candidate: their sizes are less exact on
-/// fewer samples.
-const ROUGH_TOLERANCE: f64 = 2.0;
 
 /// The context of the fits.
 pub(crate) struct Refits<'a> {
@@ -55,20 +46,9 @@ impl Refits<'_> {
         let coarse = self.coarse.with_coarse_steps();
         let projections = Projections::new(jacobian, &present.estimate);
         let residuals = |estimate: &Estimate| huber_residuals(coarse, &present.weights, estimate);
-        // Clock offsets have compensated for what is missing. Where a start makes them unnecessary, no descent path
-        // leads back.
         let cost = |estimate: &Estimate| {
-            let projection = projections.of(estimate);
-            let left = residuals(estimate);
-            let predicted = projection.cost_after(&left);
-            let synchronised = projection.synchronised(estimate, &left);
-            let resimulated = square_sum(&residuals(&synchronised)) + synchronised.prior_cost();
-            let penalty = self.penalty.of_all(estimate);
-            if resimulated < predicted {
-                (resimulated + penalty, synchronised)
-            } else {
-                (predicted + penalty, estimate.clone())
-            }
+            let predicted = projections.of(estimate).cost_after(&residuals(estimate));
+            predicted + self.penalty.of_all(estimate)
         };
         let starts = starts.into_par_iter().filter(|_| !self.options.is_over());
         let starts = starts.map(|start| pruned(start, cost)).collect();
@@ -105,19 +85,14 @@ impl Refits<'_> {
         refined.collect()
     }
 
-    /// The coarse fits that may be the best on all samples: their penalised cost is close to the least one. The
-    /// tolerance is larger for rough effects, whose sizes are less exact on fewer samples.
+    /// The coarse fits that may be the best on all samples: their penalised cost is close to the least one.
     fn likely(&self, coarse_fits: Vec<(f64, Fit)>) -> Vec<Estimate> {
         let Some((least, best)) = coarse_fits.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return Vec::new();
         };
         let least = least.min(self.best);
         let near = least + CLOSE * Penalty::given(&self.coarse.coarse_in_time, best).unit;
-        let near_if_rough = ROUGH_TOLERANCE * least;
-        let is_near = |(cost, fit): &(f64, Fit)| {
-            *cost <= near || (is_rough(&fit.estimate) && *cost <= near_if_rough)
-        };
-        let near = coarse_fits.iter().filter(|fit| is_near(fit));
+        let near = coarse_fits.iter().filter(|(cost, _)| *cost <= near);
         near.map(|(_, fit)| fit.estimate.clone()).collect()
     }
 
@@ -134,26 +109,10 @@ impl Refits<'_> {
         near.take(most).map(|(_, estimate)| estimate).collect()
     }
 
-    /// The fit from one start. If clocks are off, a start with all clocks in step is tried as well: the delay may
-    /// belong to the effect, and there is no descent path between the two minima.
+    /// The fit from one start.
     pub fn one(&self, start: Estimate) -> Fit {
-        let problem = self.coarse.problem;
-        let from = |start: Estimate| {
-            let found = self.short_fit_from(start);
-            self.line_searched(refine(problem, found.estimate))
-        };
-        let in_step = start.clocks.are_off().then(|| {
-            let clocks = Clocks::default();
-            from(Estimate {
-                clocks,
-                ..start.clone()
-            })
-        });
-        let fit = from(start);
-        match in_step {
-            Some(other) if other.cost < fit.cost => other,
-            _ => fit,
-        }
+        let found = self.short_fit_from(start);
+        self.line_searched(refine(self.coarse.problem, found.estimate))
     }
 
     /// A short fit from one start on few samples, evaluated on all samples.
@@ -163,18 +122,10 @@ impl Refits<'_> {
         evaluate_weighted(self.coarse.problem, found.estimate, weights)
     }
 
-    /// A short fit under the present weights; far from the data also by way of the coarse weights.
+    /// A short fit under the present weights.
     fn short_fit_from(&self, start: Estimate) -> Descent {
         let weights = &self.coarse.seen.weights;
-        let problem = self.coarse.with_coarse_steps();
-        let from = |far: bool| short_fit(problem, weights, start.clone(), far);
-        let near = from(false);
-        let samples = weights.count() as f64;
-        if (near.cost / samples).sqrt() <= POOR_ERROR {
-            return near;
-        }
-        let far = from(true);
-        if far.cost < near.cost { far } else { near }
+        short_fit(self.coarse.with_coarse_steps(), weights, start)
     }
 
     /// A fit after the line search for the size of each effect without useful slopes.
@@ -195,18 +146,17 @@ impl Refits<'_> {
     }
 }
 
-/// An estimate without the members whose cost reduction is below their penalty, and its penalised cost. `cost` returns
-/// the penalised cost and the adapted estimate.
-fn pruned(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64, Estimate) {
-    let (mut least, mut estimate) = cost(&start);
+/// An estimate without the members whose cost reduction is below their penalty, and its penalised cost.
+fn pruned(start: Estimate, cost: impl Fn(&Estimate) -> f64) -> (f64, Estimate) {
+    let (mut least, mut estimate) = (cost(&start), start);
     let mut index = 0;
     while index < estimate.effects.len() {
         if !estimate.is_unchanged(index) {
             let reduced = estimate.without(index);
-            let (without, adapted) = cost(&reduced);
+            let without = cost(&reduced);
             if without < least {
-                let removed = adapted.effects.len() < estimate.effects.len();
-                (estimate, least) = (adapted, without);
+                let removed = reduced.effects.len() < estimate.effects.len();
+                (estimate, least) = (reduced, without);
                 index += usize::from(!removed);
                 continue;
             }
@@ -216,25 +166,15 @@ fn pruned(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64,
     (least, estimate)
 }
 
-/// Whether the cost is not smooth along the size of some effect.
-fn is_rough(estimate: &Estimate) -> bool {
-    let mut effects = estimate.effects.iter();
-    effects.any(|added| added.effect.size_response().is_rough())
-}
-
-/// The best estimate of each set, or the best [`LOCAL_MINIMA`] if its cost has many local minima.
+/// The best estimate of each set.
 fn distinct(mut penalized: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
     penalized.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut distinct: Vec<(f64, Estimate)> = Vec::new();
-    for (cost, estimate) in penalized {
-        let key = key_of(&estimate);
-        let known = distinct
-            .iter()
-            .filter(|(_, other)| key_of(other) == key)
-            .count();
-        if known < if is_rough(&estimate) { LOCAL_MINIMA } else { 1 } {
-            distinct.push((cost, estimate));
-        }
-    }
-    distinct
+    let mut known = Vec::new();
+    penalized.retain(|(_, estimate)| {
+        let key = key_of(estimate);
+        let is_new = !known.contains(&key);
+        known.push(key);
+        is_new
+    });
+    penalized
 }

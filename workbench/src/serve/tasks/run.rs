@@ -203,7 +203,7 @@ impl Ready {
         let mut fit = evaluate(self.problem(), estimate);
         told(0, "start", &fit);
         for round in 1..=ROUNDS {
-            let descent = short_fit(self.problem(), &fit.weights, fit.estimate, false);
+            let descent = short_fit(self.problem(), &fit.weights, fit.estimate);
             fit = evaluate(self.problem(), descent.estimate);
             told(round, &format!("fitting, round {round}"), &fit);
             if descent.last_reduction <= WORTHWHILE * descent.cost {
