@@ -69,6 +69,12 @@ impl FreeConstants {
         if self.is_held { 0 } else { self.errors.len() }
     }
 
+    /// Whether the coordinates are fewer than the unknowns: flow curves keep the reading errors of their points.
+    #[must_use]
+    pub fn is_smooth(&self) -> bool {
+        self.errors.len() < self.of_unknowns.len()
+    }
+
     /// The same constants, held in a fit or not.
     #[must_use]
     pub fn held(self, is_held: bool) -> Self {

@@ -9,14 +9,16 @@ use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
 use crate::data::experiment::Experiment;
 use crate::data::nuisance::CurrentShift;
 use crate::data::problem::Problem;
-use crate::estimate::Estimate;
-use crate::estimation::residual_columns::{dot, huber, huber_residuals, quotient, quotients};
+use crate::estimate::{Estimate, Shared};
+use crate::estimation::residual_columns::{
+    central_quotients, dot, huber, huber_residuals, quotient, quotients,
+};
 use crate::residuals::whitening::Weights;
 
 /// Step of a channel's clock offset, in prior sigmas.
 const STEP_OF_OFFSET: f64 = 0.25;
 
-/// Step of a constant to either side, in tolerances.
+/// Step of constants to either side, in tolerances.
 const STEP_OF_CONSTANTS: f64 = 0.02;
 
 /// Sensitivities of all runs to their load errors, per step of one prior sigma.
@@ -93,7 +95,7 @@ fn offset_columns_of_run(
 
 /// Sensitivities of all runs to the free constants, per step of one prior sigma; by direction, then by run. The
 /// quotients are central: the curvature error of a one-sided quotient would appear to determine a direction that the
-/// campaign does not show.
+/// campaign does not show. Smooth directions are fewer than the unknowns, so that they are moved themselves.
 fn constant_columns(
     problem: Problem<'_>,
     weights: &Weights,
@@ -103,6 +105,11 @@ fn constant_columns(
     let Some(free) = free.filter(|free| free.free() > 0) else {
         return Vec::new();
     };
+    if free.is_smooth() {
+        let (direction, step) = (Shared::Constants, STEP_OF_CONSTANTS);
+        let column = |k: usize| central_quotients(problem, weights, estimate, direction(k), step);
+        return (0..free.free()).into_par_iter().map(column).collect();
+    }
     let residuals = |constants: &FreeConstants| {
         let constants = Some(constants.clone());
         huber_residuals(
