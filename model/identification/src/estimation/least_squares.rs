@@ -9,6 +9,7 @@
 
 use hitch_plant::SizeResponse;
 
+use crate::constants::free::FreeConstants;
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Step};
 use crate::estimation::jacobian::Jacobian;
@@ -75,7 +76,7 @@ pub(crate) fn descend(
         if problem.problem.limit.is_over() {
             break;
         }
-        if made % SLOW_EVERY == 0 {
+        if made % slow_every(&point.estimate) == 0 {
             slow = None;
         }
         let columns = slow.take().unwrap_or_else(|| problem.slow_columns(&point));
@@ -113,6 +114,18 @@ pub(crate) fn descend(
         estimate: point.estimate,
         cost: point.cost,
         last_reduction,
+    }
+}
+
+/// Number of Jacobians after which the columns of clocks, loads and constants are recomputed. Flow curves that are free point by
+/// point are far from the data at first, and their columns change with each step.
+fn slow_every(estimate: &Estimate) -> usize {
+    let constants = estimate.constants.as_ref();
+    let is_free = |free: &&FreeConstants| free.free() > 0 && !free.is_smooth();
+    if constants.filter(is_free).is_some() {
+        1
+    } else {
+        SLOW_EVERY
     }
 }
 
