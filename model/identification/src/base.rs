@@ -49,7 +49,10 @@ pub fn fit_base_model(
 ) -> BaseFit {
     let problem = Problem::new(experiment, declared);
     let before = fit_base(problem);
-    let fitted = |unknowns: Vec<Parameter>| {
+    let mut all = own.unknowns(declared.constants());
+    all.extend(SENSORS.iter().map(Parameter::Sensor));
+    let fitted = |free: &[usize]| {
+        let unknowns = free.iter().map(|&k| all[k]).collect();
         let start = FreeConstants::among(declared, unknowns, own);
         let found = fit(
             problem,
@@ -59,22 +62,26 @@ pub fn fit_base_model(
             },
         );
         let constants = found.estimate.constants.clone().unwrap_or(start);
-        (found, constants)
+        let mut errors = DVector::zeros(all.len());
+        for (&k, error) in free.iter().zip(constants.errors_of_unknowns()) {
+            errors[k] = *error;
+        }
+        (found, constants, errors)
     };
-    let mut all = own.unknowns(declared.constants());
-    all.retain(Parameter::is_separable);
-    all.extend(SENSORS.iter().map(Parameter::Sensor));
     say("all constants");
-    let (free, freed) = fitted(all.clone());
-    let covariance = covariance(problem, &free);
-    let posterior = covariance.map_or_else(|| freed.prior(), |known| freed.posterior(&known));
-    let known = known(&all, freed.errors_of_unknowns(), &posterior);
-    say("the constants that the campaign determines");
-    let (found, constants) = fitted(known.iter().map(|&k| all[k]).collect());
-    let mut errors = DVector::zeros(all.len());
-    for (&k, error) in known.iter().zip(constants.errors_of_unknowns()) {
-        errors[k] = *error;
+    let separable = |&k: &usize| all[k].is_separable();
+    let free: Vec<usize> = (0..all.len()).filter(separable).collect();
+    let (found, constants, errors) = fitted(&free);
+    let listed = FreeConstants::among(declared, all.clone(), own);
+    let mut posterior = listed.prior();
+    if let Some(covariance) = covariance(problem, &found) {
+        for (&k, known) in free.iter().zip(constants.posterior(&covariance)) {
+            posterior[k] = known;
+        }
     }
+    let known = known(&all, &errors, &posterior);
+    say("the constants that the campaign determines");
+    let (found, _, errors) = fitted(&known);
     let model = found.estimate.applied_to(declared);
     let estimate = Estimate {
         effects: model.effects.clone(),
@@ -82,7 +89,7 @@ pub fn fit_base_model(
         ..found.estimate
     };
     let after = refine(Problem::new(experiment, &model), estimate.with_adopted());
-    let (constants, curves) = freed.fitted(&model, &errors, &posterior);
+    let (constants, curves) = listed.fitted(&model, &errors, &posterior);
     BaseFit {
         model,
         before,
