@@ -103,7 +103,7 @@ pub fn recorded(earlier: &mut dyn Side, present: &mut dyn Side) -> Result<Replay
     let mut event = Event::PowerUp;
     for record in trace::recorded()? {
         let words = replay_side::words(&Inputs::from_bytes(&record));
-        // What only the earlier side has was not recorded.
+        // The recording does not contain the fields that only the earlier side has.
         let value = |name: &String| {
             let place = replay_side::INPUTS.iter().position(|known| known == name);
             place.map_or(0, |place| words[place])

@@ -35,7 +35,7 @@ impl Function {
 }
 
 codes! {
-    /// What determines the set point, with the code it has on links and in traces; 0 is the lever alone.
+    /// The function that sets the set point. Links and traces carry its code; code 0 is the lever alone.
     Reason: u8 {
         /// The draft.
         Draft = 1, "draft";

@@ -7,7 +7,7 @@ use crate::codes;
 pub const ROWS: usize = Trip::ALL.len();
 
 codes! {
-    /// What tripped the envelope, with the code it has on links and in traces; the order of the table.
+    /// The reason for a trip of the envelope. Links and traces carry its code; the codes have the order of the table.
     Trip: u8 {
         /// No fresh command.
         Stale = 1;

@@ -106,8 +106,10 @@ fn constant_columns(
         return Vec::new();
     };
     if free.is_smooth() {
-        let (direction, step) = (Shared::Constants, STEP_OF_CONSTANTS);
-        let column = |k: usize| central_quotients(problem, weights, estimate, direction(k), step);
+        let column = |direction: usize| {
+            let (shared, step) = (Shared::Constants(direction), STEP_OF_CONSTANTS);
+            central_quotients(problem, weights, estimate, shared, step)
+        };
         return (0..free.free()).into_par_iter().map(column).collect();
     }
     let residuals = |constants: &FreeConstants| {
