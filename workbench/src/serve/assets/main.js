@@ -49,6 +49,7 @@ async function open() {
   connectTabs((tab) => { if (tab === "model") drawCourse(state, live).catch(sayError); });
   list();
   draw();
+  showJob(state.job);
   await painted();
   performance.mark("first view");
   loadLibrary();
@@ -96,6 +97,7 @@ const refresh = inTurn(async () => {
   state = await ask("state");
   if (!state.ranking) signed = null;
   draw();
+  if (!state.job) leave();
   showJob(state.job);
   tellErrors(state.runs.map((run) => run.error));
   arrange();
@@ -167,10 +169,9 @@ const acts = {
   })),
 };
 
-/** Starts a computation with a request, and follows it.
- * @param {() => Promise<any>} request
- * @param {boolean} [watched] whether to show the panel of the model */
-async function launch(request, watched = false) {
+/** Starts a computation with a request, and follows it; `watched` shows the panel of the model. In turn with requests of the
+ * state: a state from before its start would end it on the page. */
+const launch = inTurn(async (/** @type {() => Promise<any>} */ request, watched = false) => {
   if (!byId("job").hidden) return say("A computation is running; wait for it or cancel it.");
   [tried, live] = [[], []];
   showJob("Starting");
@@ -185,7 +186,7 @@ async function launch(request, watched = false) {
     showJob(null);
     throw error;
   }
-}
+});
 
 /** A run, with the signature of the selected candidate.
  * @param {number} index
@@ -324,11 +325,10 @@ byId("rank").addEventListener("click", () => acts.run({ task: "rank" }));
 byId("explain").addEventListener("click", () => acts.run({ task: "explain", known: known(),
   budget_s: Number(/** @type {HTMLInputElement} */ (byId("explain-budget")).value),
   data_sheet: /** @type {HTMLInputElement} */ (byId("explain-sheet")).checked }));
+const cancel = inTurn(async () => { await post("cancel", {}); });
 byId("cancel").addEventListener("click", guarded(async () => {
-  await post("cancel", {});
+  await cancel();
   await refresh();
-  // An explanation ends with its best so far, which is still to come.
-  if (!state.job) leave();
 }));
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   if (!view) return;

@@ -77,11 +77,12 @@ async function refusal(response) {
   return new Refused(body.fault);
 }
 
+/** What is wrong if there is no answer. */
+const silent = () => new Refused({ what: "The server does not answer.", hint: "Start hitch serve again." });
+
 /** @param {Promise<Response>} request */
 async function answer(request) {
-  const response = await request.catch(() => {
-    throw new Refused({ what: "The server does not answer.", hint: "Start hitch serve again." });
-  });
+  const response = await request.catch(() => { throw silent(); });
   if (!response.ok) throw await refusal(response);
   return response.json();
 }
@@ -91,6 +92,7 @@ async function answer(request) {
  * @param {() => void} reconnected
  * @returns {Promise<void>} settled as soon as no message can be missed */
 export function follow(hear, reconnected) {
+  leave();
   const events = new EventSource(address("events"));
   let opened = false;
   events.onmessage = (event) => {
@@ -99,11 +101,18 @@ export function follow(hear, reconnected) {
     hear(message);
   };
   leave = () => events.close();
-  return new Promise((resolve) => {
+  return new Promise((resolve, reject) => {
     events.onopen = () => {
       if (opened) reconnected();
       opened = true;
       resolve();
+    };
+    // A connection that was open once is opened again by the browser.
+    events.onerror = () => {
+      if (opened) return;
+      events.close();
+      // The refusal of another request says why.
+      ask("state").then(() => reject(silent()), reject);
     };
   });
 }
