@@ -32,6 +32,18 @@ def assert_charts(page: Page) -> None:
     assert page.evaluate(top, [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2]), box
 
 
+def assert_in_real_time(page: Page) -> None:
+    """The simulation is not faster than real time, even after a pause that is ended at once."""
+    for _ in range(2):
+        page.evaluate("document.getElementById('loop-start').click()")
+    clocks = "[document.getElementById('loop-chart').data[0].x.at(-1), performance.now() / 1000]"
+    page.wait_for_timeout(300)
+    before = page.evaluate(clocks)
+    page.wait_for_timeout(2000)
+    simulated_s, passed_s = (after - at for at, after in zip(before, page.evaluate(clocks)))
+    assert 0 < simulated_s < 1.2 * passed_s, f"{simulated_s:.2f} s were simulated in {passed_s:.2f} s"
+
+
 def drive(page: Page, pictures: Path, name: str, view: str) -> None:
     """Drives the closed loop: the hitch follows the lever, and a broken sensor is a fault."""
     page.wait_for_selector("#loop[data-ready]")
@@ -70,6 +82,7 @@ def drive(page: Page, pictures: Path, name: str, view: str) -> None:
     assert_fits(page)
     page.select_option("#loop-kind", "none")
     both_in(page, "locked")
+    assert_in_real_time(page)
     page.click("#loop-start")
     expect(page.locator("#loop-start")).to_have_text("Start")
     with page.expect_download() as saving:

@@ -36,6 +36,8 @@ let moveField = null;
 /** Whether the closed loop has been started: a description alone starts nothing. */
 let opened = false;
 let running = false;
+/** How often it was started or continued: each time, a loop of requests begins. */
+let starts = 0;
 let visible = false;
 /** Shows an error.
  * @type {(error: unknown) => void} */
@@ -102,14 +104,14 @@ async function describe() {
 async function reopen() {
   generation += 1;
   const own = generation;
-  const starts = running;
+  const runs = running;
   opened = false;
   try {
-    const path = starts ? "loop/open" : "loop/describe";
+    const path = runs ? "loop/open" : "loop/describe";
     const described = await transport.post(path, { orders: { ...orders(), button: null, fault: null } });
     if (own !== generation) return;
     machine = described;
-    opened = starts;
+    opened = runs;
   } catch (error) {
     pause();
     say(error);
@@ -138,12 +140,16 @@ async function reopen() {
 async function start() {
   if (running) return;
   running = true;
+  starts += 1;
+  const own = starts;
   byId("loop").dataset.started = "";
   showRunning();
   if (!opened) await reopen();
   let last = performance.now();
-  while (running) {
+  // A pause may be over before the next request would have been due.
+  while (running && own === starts) {
     await new Promise((resolve) => { setTimeout(resolve, REQUEST_MS); });
+    if (own !== starts) return;
     const now = performance.now();
     const elapsed = Math.min(LONGEST_MS, Math.round(now - last));
     last = now;
