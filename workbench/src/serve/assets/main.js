@@ -63,15 +63,6 @@ async function open() {
   }
 }
 
-/** Shows the campaign that was just opened. */
-async function another() {
-  state = await ask("state");
-  signed = null;
-  list();
-  draw();
-  await showWorst();
-}
-
 async function showWorst() {
   const worst = worstCell(state);
   if (worst) await visit(worst);
@@ -91,6 +82,15 @@ function inTurn(work) {
     return mine;
   };
 }
+
+/** Shows the campaign that was just opened. */
+const another = inTurn(async () => {
+  state = await ask("state");
+  signed = null;
+  list();
+  draw();
+  await showWorst();
+});
 
 /** Requests the state again, and keeps the zoom. */
 const refresh = inTurn(async () => {
