@@ -10,9 +10,6 @@ pub(crate) struct Grid {
     pub informative: Informative,
     /// Additional fine grid for narrow minima.
     pub narrow_minima: Option<NarrowMinima>,
-    /// Half-width of the sizes evaluated on all runs around the results from the informative runs, as a share of the
-    /// size.
-    pub all_runs: f64,
     /// Number of values of the first shape parameter over its range, spaced by magnitude if the range is; a fit finds
     /// the other shape parameters from their values in the hint.
     pub shapes: usize,
@@ -70,7 +67,6 @@ pub(crate) static SWITCHING: Grid = Grid {
         finer: 0.003,
         coarsest: 0.004,
     }),
-    all_runs: 0.005,
     shapes: 3,
     distance: 0.03,
     best: 2,
@@ -87,7 +83,6 @@ pub(crate) static RINGING: Grid = Grid {
     spacing: Spacing::Share(0.06),
     informative: Informative::Changed,
     narrow_minima: None,
-    all_runs: 0.0,
     shapes: 5,
     distance: 0.1,
     best: 4,
@@ -104,7 +99,6 @@ pub(crate) static LOCATED: Grid = Grid {
     spacing: Spacing::Even(0.06),
     informative: Informative::Failed,
     narrow_minima: None,
-    all_runs: 0.0,
     shapes: 5,
     distance: 0.05,
     best: 2,

@@ -79,9 +79,7 @@ pub(crate) fn scan(
         best.truncate(grid.best);
     }
     best.truncate(grid.best);
-    best.into_iter()
-        .flat_map(|(_, added)| around(&added, (grid.all_runs, 0.0)))
-        .collect()
+    without_losses(best)
 }
 
 /// The context of a scan.
