@@ -147,14 +147,14 @@ async function start() {
   if (!opened) await reopen();
   let last = performance.now();
   // A pause may be over before the next request would have been due.
-  while (running && own === starts) {
+  const goesOn = () => running && own === starts;
+  while (goesOn()) {
     await new Promise((resolve) => { setTimeout(resolve, REQUEST_MS); });
-    if (own !== starts) return;
     const now = performance.now();
     const elapsed = Math.min(LONGEST_MS, Math.round(now - last));
     last = now;
     // An ECU that hears nothing of its tab is switched off.
-    if ((document.hidden && !isEcu()) || !running || !opened || elapsed < 1) continue;
+    if ((document.hidden && !isEcu()) || !goesOn() || !opened || elapsed < 1) continue;
     await step(elapsed);
   }
 }

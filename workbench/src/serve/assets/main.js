@@ -57,10 +57,7 @@ async function open() {
   await painted();
   performance.mark("plots");
   byId("views").dataset.ready = "";
-  if (state.job) {
-    await follow(hear, guarded(refresh));
-    await refresh();
-  }
+  if (state.job) await rejoin();
 }
 
 async function showWorst() {
@@ -90,6 +87,12 @@ const another = inTurn(async () => {
   list();
   draw();
   await showWorst();
+});
+
+/** Follows the computation that was running before a reload. */
+const rejoin = guarded(async () => {
+  await follow(hear, guarded(refresh));
+  await refresh();
 });
 
 /** Requests the state again, and keeps the zoom. */
