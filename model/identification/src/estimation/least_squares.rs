@@ -9,7 +9,6 @@
 
 use hitch_plant::SizeResponse;
 
-use crate::constants::free::FreeConstants;
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Step};
 use crate::estimation::jacobian::Jacobian;
@@ -121,8 +120,7 @@ pub(crate) fn descend(
 /// point are far from the data at first, and their columns change with each step.
 fn slow_every(estimate: &Estimate) -> usize {
     let constants = estimate.constants.as_ref();
-    let is_free = |free: &&FreeConstants| free.free() > 0 && !free.is_smooth();
-    if constants.filter(is_free).is_some() {
+    if constants.is_some_and(|constants| constants.free() > 0 && !constants.is_smooth()) {
         1
     } else {
         SLOW_EVERY

@@ -32,8 +32,7 @@ const TO_EITHER_SIDE: i32 = 5;
 const PRESELECTED: f64 = 0.25;
 const FIRST_INFORMATIVE: usize = 2;
 
-/// The sizes and shapes of an effect around those that fit the most informative runs best; `hint` is the effect at any
-/// size.
+/// The sizes and shapes of an effect that fit best; `hint` is the effect at any size.
 pub(crate) fn scan(
     problem: Problem<'_>,
     base: &Fit,
