@@ -98,6 +98,7 @@ const CRATES: [Layers; 12] = [
     Layers {
         sources: "model/identification/src",
         order: &[
+            &["parallel"],
             &["data", "constants"],
             &["estimate"],
             &["residuals"],

@@ -5,6 +5,7 @@
 //!
 //! Modules from the bottom layer to the top; none imports one above it:
 //!
+//! * `parallel`: a function of many items on all processors;
 //! * [`data`]: prepares the logs of a campaign: an [`Experiment`];
 //! * [`constants`]: errors of the base model's constants, and their prior;
 //! * [`estimate`]: values of all free parameters;
@@ -27,6 +28,7 @@ pub mod design;
 pub mod estimate;
 pub mod estimation;
 pub mod explanation;
+mod parallel;
 pub mod residuals;
 pub mod search;
 pub mod selection;

@@ -2,12 +2,12 @@
 
 use hitch_plant::Constants;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use crate::constants::fitted::{DETERMINED, MODEL_ERROR, Posterior};
 use crate::constants::parameter::Parameter;
 use crate::constants::prior::Prior;
 use crate::constants::tolerances::Tolerances;
+use crate::parallel;
 
 /// Variance of the smooth directions. The errors of neighbouring points of a flow curve are correlated: a curve of any number
 /// of points has about five directions above this variance.
@@ -135,7 +135,7 @@ impl Directions {
             }
             sum
         };
-        (0..self.len()).into_par_iter().map(along).collect()
+        parallel::map(0..self.len(), along)
     }
 }
 

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use hitch_plant::{AddedEffect, Model};
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use crate::constants::correction::{corrected, with_sensor_errors};
 use crate::constants::directions::{Directions, SMOOTH};
 use crate::constants::fitted::{CurvePoint, Fitted, FittedConstant, Posterior};
 use crate::constants::parameter::Parameter;
 use crate::constants::tolerances::{FARTHEST_SIGMAS, Tolerances};
+use crate::parallel;
 
 /// Errors of a model's constants, as coordinates along the directions of their prior, in tolerances of data sheets.
 #[derive(Debug, Clone)]
@@ -137,8 +137,7 @@ impl FreeConstants {
             };
             Some(quotient([&side(-step)?, &side(step)?], 2.0 * step))
         };
-        let unknowns = (0..self.of_unknowns.len()).into_par_iter();
-        let of_unknowns: Vec<Option<Vec<Vec<f64>>>> = unknowns.map(of_unknown).collect();
+        let of_unknowns = parallel::map(0..self.of_unknowns.len(), of_unknown);
         self.directions.combined(&of_unknowns, self.share)
     }
 

@@ -2,7 +2,6 @@
 
 use hitch_campaign::Campaign;
 use hitch_plant::{Channel, Currents, Dynamics, Model};
-use rayon::prelude::*;
 
 use crate::data::clocks::LARGEST_OFFSET_S;
 use crate::data::conditioning::jumps_within_s;
@@ -10,6 +9,7 @@ use crate::data::noise::{channel_noise, current_noise, current_persistence, pers
 use crate::data::nuisance::Nuisance;
 use crate::data::ready_run::ReadyRun;
 use crate::data::start_angle::started;
+use crate::parallel;
 
 /// A prepared campaign.
 #[derive(Debug, Clone)]
@@ -48,12 +48,10 @@ impl Experiment {
         let persistence = current_persistence(campaign, sigma);
         // Share of the noise variance that averaging over half a second does not remove.
         let slow_share = (persistence - 1.0) / persistence_block(campaign) as f64;
-        let runs: Vec<_> = campaign
-            .runs
-            .par_iter()
-            .map(|run| ReadyRun::new(run, model, sigma, slow_share, campaign.runs.len()))
-            .map(|run| started(run, model, noise))
-            .collect();
+        let runs: Vec<_> = parallel::map(&campaign.runs, |run| {
+            let run = ReadyRun::new(run, model, sigma, slow_share, campaign.runs.len());
+            started(run, model, noise)
+        });
         let jumps_within_s = jumps_within_s(runs.iter().map(|run| &run.drive));
         Self {
             name: campaign.name.clone(),
@@ -75,11 +73,9 @@ impl Experiment {
     /// model and accurate near it.
     #[must_use]
     pub fn coarse_in_time(&self, model: &Model, nuisances: &[Nuisance]) -> Self {
-        let runs = self.runs.par_iter().zip(nuisances);
+        let runs = self.runs.iter().zip(nuisances);
         Self {
-            runs: runs
-                .map(|(run, &nuisance)| run.coarse_in_time(model, nuisance))
-                .collect(),
+            runs: parallel::map(runs, |(run, &nuisance)| run.coarse_in_time(model, nuisance)),
             ..self.without_runs()
         }
     }
@@ -91,10 +87,10 @@ impl Experiment {
         if self.ringing {
             return self.clone();
         }
-        let runs = self.runs.par_iter().zip(nuisances);
-        let runs: Vec<ReadyRun> = runs
-            .map(|(run, &nuisance)| run.condensed(model, nuisance, self.current_noise))
-            .collect();
+        let runs = self.runs.iter().zip(nuisances);
+        let runs = parallel::map(runs, |(run, &nuisance)| {
+            run.condensed(model, nuisance, self.current_noise)
+        });
         let condensed = Self {
             runs,
             ..self.without_runs()

@@ -3,8 +3,6 @@
 //! There is no rival model that a likelihood ratio could be computed with. The manoeuvre goes where the error is
 //! ([`ErrorMap`]), and varies the signal there that the error depends on most.
 
-use rayon::prelude::*;
-
 use crate::adequacy::signal::Signal;
 use crate::data::problem::Problem;
 use crate::design::error_map::ErrorMap;
@@ -15,6 +13,7 @@ use crate::design::next::NextExperiment;
 use crate::design::plan::Manoeuvre;
 use crate::design::proposal::{Expecting, Proposal};
 use crate::estimation::fit::Fit;
+use crate::parallel;
 
 /// Sample rate of the feasibility check, Hz.
 const RATE_HZ: f64 = 50.0;
@@ -32,15 +31,14 @@ pub fn exploring(problem: Problem<'_>, fit: &Fit, depends_on: &[Signal]) -> Next
     let levels = Levels::new(experiment, model);
     let machine = fit.estimate.applied_to(model);
     let errors = ErrorMap::of(experiment, fit, &machine, &levels);
-    let listed: Vec<(&'static str, Manoeuvre, f64)> = TEMPLATES
-        .par_iter()
-        .map(|template| (template.name, template.on(&levels)))
-        .filter(|(_, manoeuvre)| is_feasible(manoeuvre, &levels, &machine, RATE_HZ))
-        .map(|(name, manoeuvre)| {
+    let feasible = parallel::map(TEMPLATES, |template| {
+        let manoeuvre = template.on(&levels);
+        is_feasible(&manoeuvre, &levels, &machine, RATE_HZ).then(|| {
             let shown = errors.shown_by(&manoeuvre, &machine, &levels, RATE_HZ);
-            (name, manoeuvre, shown)
+            (template.name, manoeuvre, shown)
         })
-        .collect();
+    });
+    let listed: Vec<(&'static str, Manoeuvre, f64)> = feasible.into_iter().flatten().collect();
     let most = listed.iter().max_by(|a, b| a.2.total_cmp(&b.2));
     let Some((_, most, largest)) = most else {
         return NextExperiment::missing(

@@ -1,10 +1,10 @@
 //! Whether a machine can carry out a manoeuvre.
 
 use hitch_plant::{Channel, Model};
-use rayon::prelude::*;
 
 use crate::design::levels::Levels;
 use crate::design::plan::{Manoeuvre, RunPlan, Stand};
+use crate::parallel;
 
 /// Largest pressure over the relief setting: the usual proof pressure of hydraulic components over their rated pressure.
 const PROOF: f64 = 1.5;
@@ -41,7 +41,8 @@ pub fn is_within_proof(
             .filter_map(|channel| log.channel(channel).map(<[f64]>::to_vec));
         samples.flatten().fold(0.0, f64::max)
     };
-    let runs = &manoeuvre.runs;
-    runs.par_iter()
-        .all(|run| peak_bar(run) <= PROOF * levels.relief_bar)
+    let peaks_bar = parallel::map(&manoeuvre.runs, peak_bar);
+    peaks_bar
+        .into_iter()
+        .all(|peak_bar| peak_bar <= PROOF * levels.relief_bar)
 }

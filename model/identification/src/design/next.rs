@@ -5,7 +5,6 @@ use std::fmt;
 use std::sync::OnceLock;
 
 use hitch_plant::{Effect, Model};
-use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::design::feasibility::{is_liftable, is_within_proof};
@@ -15,6 +14,7 @@ use crate::design::plan::Manoeuvre;
 use crate::design::proposal::{Expecting, Proposal};
 use crate::design::sensor::additional_instrument;
 use crate::design::separation::{Pair, PairPrior, Rival, TestBench};
+use crate::parallel;
 use crate::selection::evidence::DISTINGUISHABLE;
 
 /// Expected likelihood ratio that is decisive: a measured one has a standard deviation of twice its square root, and
@@ -172,13 +172,9 @@ pub fn next_experiment(problem: Problem<'_>, pairs: &[Pair]) -> Option<NextExper
     let bench = TestBench::new(problem, pairs.first()?.named.fit);
     let known: Vec<PairPrior> = pairs.iter().map(|pair| bench.known(*pair)).collect();
     let listed = Listed::new(problem, bench.with(pairs[0].named), bench.rate_hz());
-    let judged: Vec<Judged> = listed
-        .manoeuvres
-        .par_iter()
-        .map(|manoeuvre| Judged {
-            likelihood_ratios: bench.likelihood_ratios(manoeuvre, &known),
-        })
-        .collect();
+    let judged = parallel::map(&listed.manoeuvres, |manoeuvre| Judged {
+        likelihood_ratios: bench.likelihood_ratios(manoeuvre, &known),
+    });
     let largest = listed.first_possible(|a, b| judged[a].largest().total_cmp(&judged[b].largest()));
     let best = largest.map_or(0.0, |index| judged[index].largest());
     let instrument = (best < DECISIVE)
@@ -265,10 +261,7 @@ impl Listed {
     }
 
     fn all_possible(&self) -> Vec<Manoeuvre> {
-        let possible: Vec<bool> = (0..self.manoeuvres.len())
-            .into_par_iter()
-            .map(|index| self.is_possible(index))
-            .collect();
+        let possible = parallel::map(0..self.manoeuvres.len(), |index| self.is_possible(index));
         let manoeuvres = self.manoeuvres.iter().zip(possible);
         let kept = manoeuvres.filter(|(_, is_possible)| *is_possible);
         kept.map(|(manoeuvre, _)| manoeuvre.clone()).collect()

@@ -1,10 +1,10 @@
 //! Selection of an additional sensor that shows the difference of two effects.
 
 use hitch_plant::{Channel, Model, Plant, units};
-use rayon::prelude::*;
 
 use crate::design::plan::{Manoeuvre, RunPlan};
 use crate::design::separation::{Pair, TestBench};
+use crate::parallel;
 
 /// An instrument for a rig, with its usual noise, one sigma, in its unit.
 struct Instrument {
@@ -64,10 +64,9 @@ pub fn additional_instrument(
 ) -> Option<&'static str> {
     let [named, other] = pair.rivals().map(|rival| bench.with(rival));
     let runs: Vec<&RunPlan> = manoeuvres.iter().flat_map(|m| &m.runs).collect();
-    let largest: Vec<[f64; INSTRUMENTS.len()]> = runs
-        .par_iter()
-        .map(|run| differences(run, &named, &other, bench.rate_hz()))
-        .collect();
+    let largest: Vec<[f64; INSTRUMENTS.len()]> = parallel::map(&runs, |run| {
+        differences(run, &named, &other, bench.rate_hz())
+    });
     let channels = bench.channels();
     INSTRUMENTS
         .iter()

@@ -8,13 +8,13 @@
 //! sample dominates.
 
 use hitch_plant::SizeResponse;
-use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::residual_columns::central_quotients;
+use crate::parallel;
 
 /// Step to either side, as a share of the parameter's value, or of its scale if that is larger.
 const STEP: f64 = 0.01;
@@ -36,18 +36,14 @@ pub(crate) fn with_central_differences(
                 SizeResponse::Smooth | SizeResponse::Stepped
             )
     };
-    let columns: Vec<(usize, Vec<Vec<f64>>)> = jacobian
-        .shared
-        .par_iter()
-        .enumerate()
-        .filter(|&(_, &shared)| smooth(shared))
-        .map(|(column, &shared)| {
-            let size = estimate.get(shared).abs().max(estimate.scale(shared));
-            let step = STEP * size;
-            let quotients = central_quotients(problem, &fit.weights, estimate, shared, step);
-            (column, quotients)
-        })
-        .collect();
+    let shared = jacobian.shared.iter().enumerate();
+    let shared = shared.filter(|&(_, &shared)| smooth(shared));
+    let columns: Vec<(usize, Vec<Vec<f64>>)> = parallel::map(shared, |(column, &shared)| {
+        let size = estimate.get(shared).abs().max(estimate.scale(shared));
+        let step = STEP * size;
+        let quotients = central_quotients(problem, &fit.weights, estimate, shared, step);
+        (column, quotients)
+    });
     for (column, quotients) in columns {
         for (run, quotient) in jacobian.runs.iter_mut().zip(quotients) {
             run.shared[column] = quotient;

@@ -4,13 +4,12 @@
 //! such a local minimum, and no gradient leads out of it. Shifting a channel of a simulated trace is cheap, so all
 //! offsets on a grid are evaluated.
 
-use rayon::prelude::*;
-
 use crate::data::clocks::{Clocks, LARGEST_OFFSET_S, OFFSET_PRIOR_S};
 use crate::data::nuisance::CurrentShift;
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::residual_columns::{dot, huber};
+use crate::parallel;
 use crate::residuals::whitening::Weights;
 
 /// Grid step of the offsets, s: a tenth of the shortest period that a sampling time of 20 ms resolves.
@@ -59,21 +58,17 @@ fn costs(
         experiment, model, ..
     } = problem;
     let model = estimate.applied_to(model);
-    let of_runs: Vec<Vec<[f64; 4]>> = experiment
-        .runs
-        .par_iter()
-        .enumerate()
-        .map(|(index, run)| {
-            let in_step = run.trace(&model, estimate.nuisances[index], CurrentShift::default());
-            let cost = |clocks: &Clocks| {
-                let trace = run.stamped(&in_step, clocks);
-                let whitened = huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0);
-                let of = |channel: usize| &whitened[channel * run.len()..(channel + 1) * run.len()];
-                std::array::from_fn(|channel| dot(of(channel), of(channel)))
-            };
-            tried.iter().map(cost).collect()
-        })
-        .collect();
+    let runs = experiment.runs.iter().enumerate();
+    let of_runs: Vec<Vec<[f64; 4]>> = parallel::map(runs, |(index, run)| {
+        let in_step = run.trace(&model, estimate.nuisances[index], CurrentShift::default());
+        let cost = |clocks: &Clocks| {
+            let trace = run.stamped(&in_step, clocks);
+            let whitened = huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0);
+            let of = |channel: usize| &whitened[channel * run.len()..(channel + 1) * run.len()];
+            std::array::from_fn(|channel| dot(of(channel), of(channel)))
+        };
+        tried.iter().map(cost).collect()
+    });
     let total = |(at, clocks): (usize, &Clocks)| {
         std::array::from_fn(|channel| {
             let prior = (clocks.offsets_s[channel] / OFFSET_PRIOR_S).powi(2);

@@ -6,13 +6,13 @@
 
 use hitch_plant::SizeResponse;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared, Step};
 use crate::estimation::gram::Gram;
 use crate::estimation::residual_columns::{dot, huber_residuals, quotients, subtract};
 use crate::estimation::slow_columns::SlowColumns;
+use crate::parallel;
 use crate::residuals::whitening::Weights;
 
 /// Step of a difference quotient, as a share of the parameter's value, or of its scale if that is larger.
@@ -92,11 +92,10 @@ impl Jacobian {
     ) -> Self {
         let Problem { experiment, .. } = problem;
         let shared = estimate.shared();
-        let columns: Vec<Vec<Vec<f64>>> = shared
-            .par_iter()
-            .filter(|parameter| !parameter.has_prior())
-            .map(|&parameter| shared_column(problem, weights, estimate, base, parameter))
-            .collect();
+        let free = shared.iter().filter(|parameter| !parameter.has_prior());
+        let columns = parallel::map(free, |&parameter| {
+            shared_column(problem, weights, estimate, base, parameter)
+        });
         let runs = (0..base.len())
             .map(|run| RunJacobian {
                 residual: base[run].clone(),
@@ -131,8 +130,7 @@ impl Jacobian {
             let columns = shared.chain(further).chain([residuals[index]]);
             run.products(&columns.collect::<Vec<&[f64]>>())
         };
-        let runs = self.runs.par_iter().enumerate();
-        let runs: Vec<DMatrix<f64>> = runs.map(of_run).collect();
+        let runs = parallel::map(self.runs.iter().enumerate(), of_run);
         let last = shared.len() + further.len();
         let mut whole: DMatrix<f64> = DMatrix::zeros(last + 1, last + 1);
         for run in runs {

@@ -1,9 +1,8 @@
 //! The residuals of an estimate, and columns of their changes.
 
-use rayon::prelude::*;
-
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared};
+use crate::parallel;
 use crate::residuals::whitening::Weights;
 
 /// Threshold of Huber's loss, in sigmas: beyond it the loss grows linearly instead of quadratically.
@@ -16,14 +15,11 @@ pub fn residuals(problem: Problem<'_>, weights: &Weights, estimate: &Estimate) -
         experiment, model, ..
     } = problem;
     let model = estimate.applied_to(model);
-    (0..experiment.runs.len())
-        .into_par_iter()
-        .map(|index| {
-            let run = &experiment.runs[index];
-            let trace = run.simulate(&model, estimate.nuisances[index], &estimate.clocks);
-            weights.runs[index].whiten(run, &trace)
-        })
-        .collect()
+    parallel::map(0..experiment.runs.len(), |index| {
+        let run = &experiment.runs[index];
+        let trace = run.simulate(&model, estimate.nuisances[index], &estimate.clocks);
+        weights.runs[index].whiten(run, &trace)
+    })
 }
 
 /// Residuals transformed such that their squares are Huber losses.

@@ -2,7 +2,6 @@
 
 use hitch_plant::Channel;
 use hitch_plant::simulation::Trace;
-use rayon::prelude::*;
 
 use crate::constants::free::FreeConstants;
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
@@ -13,6 +12,7 @@ use crate::estimate::{Estimate, Shared};
 use crate::estimation::residual_columns::{
     central_quotients, dot, huber, huber_residuals, quotient, quotients,
 };
+use crate::parallel;
 use crate::residuals::whitening::Weights;
 
 /// Step of a channel's clock offset, in prior sigmas.
@@ -54,14 +54,11 @@ fn offset_columns(
 ) -> [Vec<Vec<f64>>; 4] {
     let Problem { experiment, .. } = problem;
     let model = estimate.applied_to(problem.model);
-    let columns: Vec<[Vec<f64>; 4]> = (0..experiment.runs.len())
-        .into_par_iter()
-        .map(|index| {
-            let nuisance = estimate.nuisances[index];
-            let plain = experiment.runs[index].trace(&model, nuisance, CurrentShift::default());
-            offset_columns_of_run(experiment, index, weights, &plain, estimate.clocks)
-        })
-        .collect();
+    let columns: Vec<[Vec<f64>; 4]> = parallel::map(0..experiment.runs.len(), |index| {
+        let nuisance = estimate.nuisances[index];
+        let plain = experiment.runs[index].trace(&model, nuisance, CurrentShift::default());
+        offset_columns_of_run(experiment, index, weights, &plain, estimate.clocks)
+    });
     std::array::from_fn(|channel| columns.iter().map(|run| run[channel].clone()).collect())
 }
 
@@ -110,7 +107,7 @@ fn constant_columns(
             let (shared, step) = (Shared::Constants(direction), STEP_OF_CONSTANTS);
             central_quotients(problem, weights, estimate, shared, step)
         };
-        return (0..free.free()).into_par_iter().map(column).collect();
+        return parallel::map(0..free.free(), column);
     }
     let residuals = |constants: &FreeConstants| {
         let constants = Some(constants.clone());

@@ -14,7 +14,6 @@
 
 use hitch_campaign::Bench;
 use hitch_plant::{Channel, Currents};
-use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
 use crate::data::nuisance::Nuisance;
@@ -23,6 +22,7 @@ use crate::data::ready_run::{ReadyRun, Widening};
 use crate::data::regime::Regime;
 use crate::estimation::fit::Fit;
 use crate::explanation::explain::fit_base;
+use crate::parallel;
 
 /// Largest difference of two logged currents of one manoeuvre, in sigmas of their difference.
 const SAME_CURRENT: f64 = 5.0;
@@ -272,25 +272,23 @@ impl Seen {
     /// observation of the largest error.
     fn left_by_model(&self, run: &ReadyRun) -> Vec<[Left; 4]> {
         let of_bench = &self.states[usize::from(run.on_hitch())];
-        let samples = states(run).into_par_iter().zip(&run.regimes);
-        samples
-            .map(|(state, regime)| {
-                let (mut sums, mut seen) = (self.largest, [0.0; 4]);
-                for (other, squares) in &of_bench[place(*regime)] {
-                    let likeness = self.likeness(&state, other);
-                    for channel in 0..4 {
-                        if squares[channel].is_finite() {
-                            sums[channel] += likeness * squares[channel];
-                            seen[channel] += likeness;
-                        }
+        let samples = states(run).into_iter().zip(&run.regimes);
+        parallel::map(samples, |(state, regime)| {
+            let (mut sums, mut seen) = (self.largest, [0.0; 4]);
+            for (other, squares) in &of_bench[place(*regime)] {
+                let likeness = self.likeness(&state, other);
+                for channel in 0..4 {
+                    if squares[channel].is_finite() {
+                        sums[channel] += likeness * squares[channel];
+                        seen[channel] += likeness;
                     }
                 }
-                std::array::from_fn(|channel| Left {
-                    square: (sums[channel] / (1.0 + seen[channel])).max(1.0),
-                    is_seen: seen[channel] >= FEWEST,
-                })
+            }
+            std::array::from_fn(|channel| Left {
+                square: (sums[channel] / (1.0 + seen[channel])).max(1.0),
+                is_seen: seen[channel] >= FEWEST,
             })
-            .collect()
+        })
     }
 }
 

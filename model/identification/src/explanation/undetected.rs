@@ -4,7 +4,6 @@
 //! relief valve at a stop. Duty cycles contain neither, so their verdict says nothing about these effects.
 
 use hitch_plant::{AddedEffect, Channel, Effect};
-use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
@@ -12,6 +11,7 @@ use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::residual_columns::{difference, huber, huber_residuals};
+use crate::parallel;
 use crate::search::candidates::absent;
 use crate::selection::evidence::{VISIBLE, detectability};
 
@@ -39,22 +39,20 @@ pub fn undetected(problem: Problem<'_>, fit: &Fit) -> Vec<Undetected> {
     let (weights, estimate) = (&fit.weights, &fit.estimate);
     let jacobian = Jacobian::new(problem, weights, estimate);
     let projection = NuisanceProjection::new(&jacobian, estimate, 0..0);
-    let mut undetected: Vec<Undetected> = absent(model, estimate)
-        .into_par_iter()
-        .filter(|effect| effect.form().is_none())
-        .map(|effect| {
-            let mut with = estimate.clone();
-            with.effects.push(AddedEffect::typical(effect));
-            let with = huber_residuals(problem, weights, &with);
-            let (left, penalty) = projection.project_within_range(difference(&base, &with));
-            Undetected {
-                effect,
-                detectability: detectability(&left, penalty, weights.count()),
-                missing: missing(experiment, effect),
-            }
-        })
-        .filter(|undetected| undetected.detectability < VISIBLE)
-        .collect();
+    let effects = absent(model, estimate).into_iter();
+    let plain = effects.filter(|effect| effect.form().is_none());
+    let mut undetected = parallel::map(plain, |effect| {
+        let mut with = estimate.clone();
+        with.effects.push(AddedEffect::typical(effect));
+        let with = huber_residuals(problem, weights, &with);
+        let (left, penalty) = projection.project_within_range(difference(&base, &with));
+        Undetected {
+            effect,
+            detectability: detectability(&left, penalty, weights.count()),
+            missing: missing(experiment, effect),
+        }
+    });
+    undetected.retain(|undetected| undetected.detectability < VISIBLE);
     undetected.sort_by(|a, b| a.detectability.total_cmp(&b.detectability));
     undetected
 }

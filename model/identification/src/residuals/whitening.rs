@@ -16,7 +16,6 @@ use std::sync::Arc;
 
 use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Model};
-use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
 use crate::data::nuisance::CurrentShift;
@@ -24,6 +23,7 @@ use crate::data::problem::Problem;
 use crate::data::ready_run::{ReadyRun, Widening};
 use crate::data::regime::Regime;
 use crate::estimate::Estimate;
+use crate::parallel;
 use crate::residuals::contact_mask::contact_mask;
 use crate::residuals::phase::timing_errors_s;
 use crate::residuals::walk::Walk;
@@ -68,10 +68,9 @@ impl Weights {
             experiment, model, ..
         } = problem;
         let model = estimate.applied_to(model);
-        let runs: Vec<RunWeights> = (0..experiment.runs.len())
-            .into_par_iter()
-            .map(|index| RunWeights::new(experiment, index, &model, estimate))
-            .collect();
+        let runs = parallel::map(0..experiment.runs.len(), |index| {
+            RunWeights::new(experiment, index, &model, estimate)
+        });
         Self::counted(runs)
     }
 

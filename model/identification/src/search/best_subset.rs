@@ -5,9 +5,8 @@
 
 use std::collections::HashSet;
 
-use rayon::prelude::*;
-
 use crate::estimation::gram::Gram;
+use crate::parallel;
 use crate::search::dictionary_entry::Entry;
 
 /// Size up to which all subsets are enumerated.
@@ -70,10 +69,7 @@ fn grown(gram: &Gram, entries: &[Entry], smaller: &[Subset], beam: usize) -> Vec
             }
         }
     }
-    let mut grown: Vec<Subset> = wanted
-        .into_par_iter()
-        .map(|columns| fitted(gram, entries, columns))
-        .collect();
+    let mut grown = parallel::map(wanted, |columns| fitted(gram, entries, columns));
     grown.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     grown
 }

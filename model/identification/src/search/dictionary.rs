@@ -1,7 +1,6 @@
 //! The dictionary: candidate changes of a model, each simulated around a fit as a column.
 
 use hitch_plant::{AddedEffect, Effect, SizeResponse};
-use rayon::prelude::*;
 
 use crate::data::limit::Limit;
 use crate::data::problem::Problem;
@@ -10,6 +9,7 @@ use crate::estimation::gram::Gram;
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::residual_columns::{difference, huber, subtract};
+use crate::parallel;
 use crate::search::best_subset::Subset;
 use crate::search::candidates::possible;
 use crate::search::coarse_view::Coarse;
@@ -171,22 +171,22 @@ impl DictionaryBuilder<'_> {
             share: (0.0, LARGEST_SHARE),
             added: estimate.effects[index].clone(),
         };
-        let own = indices.into_par_iter();
-        own.filter(|&index| !estimate.is_unchanged(index))
-            .map(column)
-            .collect()
+        parallel::map(
+            indices.filter(|&index| !estimate.is_unchanged(index)),
+            column,
+        )
     }
 
     /// Columns of the effects that the search has added, in their other forms.
     fn other_forms(&self, screen: &Screen, own: &[Entry]) -> Vec<Entry> {
         let estimate = &self.coarse.present.estimate;
-        let added = own.par_iter().filter_map(|entry| match entry.kind {
+        let added = own.iter().filter_map(|entry| match entry.kind {
             Kind::Present(index) if estimate.adopted_as(entry.id()).is_none() => {
                 Some((index, entry))
             }
             _ => None,
         });
-        let forms = added.flat_map_iter(|(index, entry)| {
+        let forms = added.flat_map(|(index, entry)| {
             let other = |form: &&'static dyn Effect| {
                 form.id() == entry.id() && form.form() != entry.added.effect.form()
             };
@@ -208,16 +208,16 @@ impl DictionaryBuilder<'_> {
                 added,
             }
         };
-        forms.map(column).collect()
+        parallel::map(forms, column)
     }
 
     /// Columns of unchanged adopted effects, at other sizes.
     fn changed(&self, screen: &Screen) -> Vec<Entry> {
         let estimate = &self.coarse.present.estimate;
-        let indices = (0..estimate.effects.len()).into_par_iter();
+        let indices = 0..estimate.effects.len();
         let goes_on = !screen.problem.limit.is_over();
         let unchanged = indices.filter(|&index| goes_on && estimate.is_unchanged(index));
-        let sizes = unchanged.flat_map_iter(|index| {
+        let sizes = unchanged.flat_map(|index| {
             let sizes = changed_sizes(&estimate.effects[index]).into_iter();
             sizes.map(move |size| (index, size))
         });
@@ -233,7 +233,7 @@ impl DictionaryBuilder<'_> {
                 added: other.effects[index].clone(),
             }
         };
-        sizes.map(column).collect()
+        parallel::map(sizes, column)
     }
 }
 

@@ -7,10 +7,10 @@
 //! ground shows nothing of it: its cost steps where the hitch of the model touches the ground too.
 
 use hitch_plant::{AddedEffect, SizeResponse};
-use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate_weighted, refine};
+use crate::parallel;
 use crate::search::shape_starts::scaled;
 
 /// Distance of the trial sizes to either side, as powers of e, for switching, stepped and located effects, and their number.
@@ -56,14 +56,13 @@ fn reaches(response: SizeResponse, ringing: bool) -> &'static [f64] {
 
 /// The best of the nearby sizes, all other parameters fixed.
 fn nearby(problem: Problem<'_>, fit: &Fit, index: usize, reach: f64) -> Fit {
-    let sizes = (-TO_EITHER_SIDE..=TO_EITHER_SIDE).into_par_iter();
-    sizes
-        .map(|step| {
-            let mut estimate = fit.estimate.clone();
-            let away = reach * f64::from(step) / f64::from(TO_EITHER_SIDE);
-            estimate.effects[index] = resized(&estimate.effects[index], away.exp());
-            evaluate_weighted(problem, estimate, fit.weights.clone())
-        })
+    let fits = parallel::map(-TO_EITHER_SIDE..=TO_EITHER_SIDE, |step| {
+        let mut estimate = fit.estimate.clone();
+        let away = reach * f64::from(step) / f64::from(TO_EITHER_SIDE);
+        estimate.effects[index] = resized(&estimate.effects[index], away.exp());
+        evaluate_weighted(problem, estimate, fit.weights.clone())
+    });
+    fits.into_iter()
         .min_by(|a, b| a.cost.total_cmp(&b.cost))
         .expect("there are sizes")
 }

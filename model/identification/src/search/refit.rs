@@ -1,12 +1,11 @@
 //! Fits of promising sets of effects with the full model.
 
-use rayon::prelude::*;
-
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate, evaluate_weighted, refine, short_fit};
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::least_squares::Descent;
 use crate::estimation::residual_columns::huber_residuals;
+use crate::parallel;
 use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
 use crate::search::line_search::line_searched;
@@ -50,9 +49,10 @@ impl Refits<'_> {
             let predicted = projections.of(estimate).cost_after(&residuals(estimate));
             predicted + self.penalty.of_all(estimate)
         };
-        let starts = starts.into_par_iter().filter(|_| !self.options.is_over());
-        let starts = starts.map(|start| pruned(start, cost)).collect();
-        let mut starts = distinct(starts);
+        let starts = parallel::map(starts, |start| {
+            (!self.options.is_over()).then(|| pruned(start, cost))
+        });
+        let mut starts = distinct(starts.into_iter().flatten().collect());
         starts.retain(|(_, start)| !known.contains(&key_of(start)));
         let short_fit = |start: Estimate| {
             let found = self.short_fit_from(start);
@@ -63,26 +63,24 @@ impl Refits<'_> {
         };
         let unless_past_deadline =
             |start: Estimate| (!self.options.is_over()).then(|| short_fit(start));
-        let starts = self.nearest(starts, SHORT_FITS).into_par_iter();
-        let short_fits: Vec<(f64, Estimate)> = starts.filter_map(unless_past_deadline).collect();
-        let nearest = self.nearest(short_fits, REFINED).into_par_iter();
-        let coarse_fits: Vec<(f64, Fit)> = nearest
-            .filter(|_| !self.options.is_over())
-            .map(|start| {
+        let starts = self.nearest(starts, SHORT_FITS);
+        let short_fits = parallel::map(starts, unless_past_deadline);
+        let short_fits = short_fits.into_iter().flatten().collect();
+        let coarse_fits = parallel::map(self.nearest(short_fits, REFINED), |start| {
+            (!self.options.is_over()).then(|| {
                 let fit = refine(coarse, start);
                 let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());
                 let under_present = evaluate_weighted(coarse, estimate, weights).cost;
                 let cost = fit.cost.min(under_present) + self.penalty.of_all(&fit.estimate);
                 (cost, fit)
             })
-            .collect();
-        let likely = self.likely(coarse_fits).into_par_iter();
-        let refined = likely.map(|estimate| {
+        });
+        let likely = self.likely(coarse_fits.into_iter().flatten().collect());
+        parallel::map(likely, |estimate| {
             let fit = self.line_searched(refine(problem, estimate));
             progress(&key(&fit).name());
             fit
-        });
-        refined.collect()
+        })
     }
 
     /// The coarse fits that may be the best on all samples: their penalised cost is close to the least one.

@@ -5,13 +5,13 @@
 //! shape ranges, and at the results of a fine scan if requested.
 
 use hitch_plant::{AddedEffect, Effect, SizeResponse, is_same};
-use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::residual_columns::{difference, huber_residuals};
+use crate::parallel;
 use crate::search::coarse_view::Coarse;
 use crate::search::dictionary_entry::{Entry, Kind};
 use crate::search::secant_ends::{End, best, columns, trusted};
@@ -57,15 +57,15 @@ pub(crate) struct Screen<'a> {
 impl Screen<'_> {
     /// The columns of effects that the model lacks.
     pub fn columns(&self, effects: Vec<&'static dyn Effect>) -> Vec<Entry> {
-        let goes_on = |_: &&'static dyn Effect| !self.problem.limit.is_over();
-        let forms = effects.into_par_iter().filter(goes_on);
-        let mut forms: Vec<Vec<End>> = forms.map(|effect| self.at_first_sizes(effect)).collect();
+        let forms = parallel::map(effects, |effect| {
+            (!self.problem.limit.is_over()).then(|| self.at_first_sizes(effect))
+        });
+        let mut forms: Vec<Vec<End>> = forms.into_iter().flatten().collect();
         let here = self.cost();
-        let predicted: Vec<f64> = forms.par_iter().map(|ends| self.predicted(ends)).collect();
+        let predicted: Vec<f64> = parallel::map(&forms, |ends| self.predicted(ends));
         let least = predicted.iter().copied().fold(here, f64::min);
         let worthwhile = (PROMISING * (here - least)).max(self.worthwhile);
-        let examined = forms.par_iter_mut().zip(&predicted);
-        examined.for_each(|(ends, predicted)| {
+        parallel::map(forms.iter_mut().zip(&predicted), |(ends, predicted)| {
             if here - predicted > worthwhile && !self.problem.limit.is_over() {
                 self.examine(ends);
             }
@@ -91,14 +91,14 @@ impl Screen<'_> {
                 None => forms.push(vec![end]),
             }
         }
-        let found = forms.into_par_iter().flat_map_iter(|mut ends| {
+        let scanned = parallel::map(forms, |mut ends| {
             let promising = self.cost() - self.predicted(&ends) > self.worthwhile;
             if !self.problem.limit.is_over() {
                 self.fine_scan(&mut ends, promising);
             }
             columns(ends, self.here)
         });
-        entries.par_extend(found);
+        entries.extend(scanned.into_iter().flatten());
         entries
     }
 
@@ -245,8 +245,7 @@ impl Screen<'_> {
     }
 
     fn ends(&self, added: Vec<AddedEffect>, first: bool) -> Vec<End> {
-        let added = added.into_par_iter();
-        added.map(|added| self.end(added, first)).collect()
+        parallel::map(added, |added| self.end(added, first))
     }
 
     fn end(&self, added: AddedEffect, first: bool) -> End {

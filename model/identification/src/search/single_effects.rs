@@ -1,11 +1,11 @@
 //! Effects tried one at a time on a fitted model.
 
 use hitch_plant::{AddedEffect, Effect, is_same};
-use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate_weighted};
+use crate::parallel;
 use crate::search::best_subset::fitted;
 use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
@@ -110,7 +110,7 @@ pub fn try_each(
     // Index of the added effect.
     let added = base.estimate.effects.len();
     let promising = |cost: f64| coarse.seen.cost - cost > builder.worthwhile || effects.len() == 1;
-    let tried = tried.into_par_iter().enumerate().map(|(rank, tried)| {
+    let tried = parallel::map(tried.into_iter().enumerate(), |(rank, tried)| {
         let Tried {
             effect,
             cost,
@@ -120,7 +120,7 @@ pub fn try_each(
         let first = starts.first().cloned().filter(|_| promising(cost));
         let candidate = match first {
             Some(_) if rank < FITTED && cost <= considerable => {
-                let fits = starts.into_par_iter().map(|start| refits.one(start));
+                let fits = parallel::map(starts, |start| refits.one(start)).into_iter();
                 let best = fits.min_by(|a, b| a.cost.total_cmp(&b.cost));
                 weigh(problem, base, best.unwrap_or_else(|| base.clone()), added)
             }
@@ -140,7 +140,7 @@ pub fn try_each(
         weighed(&candidate);
         candidate
     });
-    likeliest_forms(tried.collect())
+    likeliest_forms(tried)
 }
 
 /// Probability of each candidate among all candidates and none, times the probability that it is the named effect

@@ -6,7 +6,6 @@
 //! sizes are simulated in a second.
 
 use hitch_plant::{AddedEffect, Model, Parameter};
-use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
@@ -14,6 +13,7 @@ use crate::data::ready_run::ReadyRun;
 use crate::data::regime::Regime;
 use crate::estimation::fit::Fit;
 use crate::estimation::residual_columns::residuals;
+use crate::parallel;
 use crate::search::shape_starts::scaled;
 use crate::search::size_grid::{Grid, Informative, Spacing};
 
@@ -144,10 +144,7 @@ impl Scan<'_> {
 
     /// Added effects by their negative log-likelihood on some runs, ascending.
     fn ranked(&self, added: Vec<AddedEffect>, runs: &[usize]) -> Vec<(f64, AddedEffect)> {
-        let mut ranked: Vec<(f64, AddedEffect)> = added
-            .into_par_iter()
-            .map(|added| (self.left(&added, runs), added))
-            .collect();
+        let mut ranked = parallel::map(added, |added| (self.left(&added, runs), added));
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         ranked
     }

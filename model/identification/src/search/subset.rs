@@ -13,12 +13,12 @@
 use std::collections::BTreeMap;
 
 use hitch_plant::{Effect, ParameterKind};
-use rayon::prelude::*;
 
 use crate::data::clocks::Clocks;
 use crate::data::limit::Limit;
 use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate, evaluate_weighted, refine};
+use crate::parallel;
 use crate::search::candidates::{Progress, showing};
 use crate::search::coarse_view::Coarse;
 use crate::search::confounded::confounded;
@@ -88,9 +88,8 @@ impl Found {
 
     /// Fits without each of its effects.
     pub fn without_each(&self, problem: Problem<'_>) -> Vec<Fit> {
-        let effects = self.order.par_iter();
         let without = |&effect: &usize| refine(problem, self.fit.estimate.without(effect));
-        effects.map(without).collect()
+        parallel::map(&self.order, without)
     }
 
     /// Moves to the best of the sets that were fitted, with fits of subsets of its effects, if that is better and has fewer

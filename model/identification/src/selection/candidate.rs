@@ -3,7 +3,6 @@
 use std::f64::consts::SQRT_2;
 
 use hitch_plant::{AddedEffect, Effect, ParameterKind};
-use rayon::prelude::*;
 
 use crate::adequacy::lack_of_fit::{EXACT, SLOW_NOISE, TOLERATED_DISCREPANCY};
 use crate::data::experiment::Experiment;
@@ -16,6 +15,7 @@ use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::profile_likelihood::ProfileLikelihood;
 use crate::estimation::residual_columns::{difference, huber, huber_residuals, square_sum};
 use crate::estimation::slow_columns::SlowColumns;
+use crate::parallel;
 use crate::selection::evidence::{detectability, log_odds, variance_inflation};
 
 /// Ratio of the mean square that an effect explains to the remaining one, weighted by its signature, at which it is
@@ -175,34 +175,31 @@ fn weigh_with(
         inflation,
         explained_share,
     } = Evidence::new(problem, &fit, index, jacobian);
-    let intervals = signatures
-        .par_iter()
-        .map(|signature| {
-            let deviation = (variance * signature.inflation / signature.square).sqrt();
-            let value = fit.estimate.get(signature.shared);
-            let range = &effect.parameters()[signature.parameter];
-            let systematic = 1.96
-                * systematic(&fit.estimate.effects[index], signature.parameter)
-                    .hypot(of_discrepancy(experiment, &fit, index, signature.parameter));
-            let predicted = 1.96 * deviation * fit.estimate.scale(signature.shared);
-            let profile = ProfileLikelihood {
-                problem,
-                fit: &fit,
-                shared: signature.shared,
-                projection: &signature.projection,
-            };
-            let rise = 1.96f64.powi(2) * variance * signature.inflation;
-            let end = |half: f64| match ends {
-                Ends::Profile if !problem.limit.is_over() => profile.end(half, rise),
-                Ends::Profile | Ends::Curvature => half,
-            };
-            let [down, up] = [-predicted, predicted].map(end);
-            (
-                (value - down.hypot(systematic)).max(range.low),
-                (value + up.hypot(systematic)).min(range.high),
-            )
-        })
-        .collect();
+    let intervals = parallel::map(&signatures, |signature| {
+        let deviation = (variance * signature.inflation / signature.square).sqrt();
+        let value = fit.estimate.get(signature.shared);
+        let range = &effect.parameters()[signature.parameter];
+        let systematic =
+            1.96 * systematic(&fit.estimate.effects[index], signature.parameter)
+                .hypot(of_discrepancy(experiment, &fit, index, signature.parameter));
+        let predicted = 1.96 * deviation * fit.estimate.scale(signature.shared);
+        let profile = ProfileLikelihood {
+            problem,
+            fit: &fit,
+            shared: signature.shared,
+            projection: &signature.projection,
+        };
+        let rise = 1.96f64.powi(2) * variance * signature.inflation;
+        let end = |half: f64| match ends {
+            Ends::Profile if !problem.limit.is_over() => profile.end(half, rise),
+            Ends::Profile | Ends::Curvature => half,
+        };
+        let [down, up] = [-predicted, predicted].map(end);
+        (
+            (value - down.hypot(systematic)).max(range.low),
+            (value + up.hypot(systematic)).min(range.high),
+        )
+    });
     let [without, with] = base.compared(&fit);
     Candidate {
         effect,

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
@@ -13,6 +12,7 @@ use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::residual_columns::{dot, huber};
+use crate::parallel;
 use crate::selection::candidate::{jacobian_by, slow_columns};
 
 /// Length of a stretch, s: the errors of a move and of the rest after it are one error, those of two moves are two.
@@ -50,13 +50,10 @@ impl Sensitivities {
         let own: Vec<usize> = columns.filter(|&column| self.is_constant(column)).collect();
         let others =
             NuisanceProjection::keeping(&self.jacobian, &self.estimate, |k| !self.is_constant(k));
-        let signatures: Vec<Vec<Vec<f64>>> = own
-            .par_iter()
-            .map(|&column| {
-                let runs = self.jacobian.runs.iter();
-                others.project(runs.map(|run| run.shared[column].clone()).collect())
-            })
-            .collect();
+        let signatures: Vec<Vec<Vec<f64>>> = parallel::map(&own, |&column| {
+            let runs = self.jacobian.runs.iter();
+            others.project(runs.map(|run| run.shared[column].clone()).collect())
+        });
         let mut scatter = DMatrix::zeros(own.len(), own.len());
         let mut stretches = 0;
         for (index, run) in experiment.runs.iter().enumerate() {

@@ -5,11 +5,10 @@
 //! therefore computed from the autocovariances of residual and signature together (Newey & West 1987, Bartlett window),
 //! for each effect separately: autocorrelation affects a fast signature less than a slowly varying one.
 
-use rayon::prelude::*;
-
 use crate::data::experiment::Experiment;
 use crate::data::ready_run::ReadyRun;
 use crate::estimation::residual_columns::{dot, square_sum};
+use crate::parallel;
 
 /// Window length of the autocovariances, s.
 const REACH_S: f64 = 2.0;
@@ -22,21 +21,18 @@ pub fn variance_inflation(
     residuals: &[Vec<f64>],
     signature: &[Vec<f64>],
 ) -> f64 {
-    let sums: Vec<(f64, f64)> = (0..residuals.len())
-        .into_par_iter()
-        .map(|run| {
-            let (samples, reach) = (experiment.runs[run].len(), reach(&experiment.runs[run]));
-            let mut sums = (0.0, 0.0);
-            for channel in 0..4 {
-                let part = channel * samples..(channel + 1) * samples;
-                let (long, short) =
-                    windowed(&residuals[run][part.clone()], &signature[run][part], reach);
-                sums.0 += long;
-                sums.1 += short;
-            }
-            sums
-        })
-        .collect();
+    let sums: Vec<(f64, f64)> = parallel::map(0..residuals.len(), |run| {
+        let (samples, reach) = (experiment.runs[run].len(), reach(&experiment.runs[run]));
+        let mut sums = (0.0, 0.0);
+        for channel in 0..4 {
+            let part = channel * samples..(channel + 1) * samples;
+            let (long, short) =
+                windowed(&residuals[run][part.clone()], &signature[run][part], reach);
+            sums.0 += long;
+            sums.1 += short;
+        }
+        sums
+    });
     let (long, short) = sums
         .iter()
         .fold((0.0, 0.0), |(l, s), (long, short)| (l + long, s + short));

@@ -1,11 +1,10 @@
 //! Cross-validation: error in held-out runs, or in held-out blocks of the only run.
 
-use rayon::prelude::*;
-
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{ErrorSums, Fit, evaluate_weighted, fit_loads, refine_once};
+use crate::parallel;
 use crate::residuals::whitening::Weights;
 
 /// Number of folds.
@@ -52,16 +51,13 @@ impl HeldOut {
 pub fn held_out(problem: Problem<'_>, fit: &Fit) -> HeldOut {
     let runs = problem.experiment.runs.len();
     let folds = if runs == 1 { FOLDS } else { FOLDS.min(runs) };
-    let parts: Vec<(ErrorSums, ErrorSums)> = (0..folds)
-        .into_par_iter()
-        .map(|fold| {
-            let tested = match runs {
-                1 => held_out_blocks(problem, fit, fold),
-                _ => held_out_runs(problem, fit, fold, folds),
-            };
-            (ErrorSums::of(&tested), ErrorSums::with_huber_loss(&tested))
-        })
-        .collect();
+    let parts = parallel::map(0..folds, |fold| {
+        let tested = match runs {
+            1 => held_out_blocks(problem, fit, fold),
+            _ => held_out_runs(problem, fit, fold, folds),
+        };
+        (ErrorSums::of(&tested), ErrorSums::with_huber_loss(&tested))
+    });
     let (errors, losses): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
     HeldOut {
         error: ErrorSums::total(&errors).error(),

@@ -3,13 +3,13 @@
 use hitch_effects::TermEffect;
 use hitch_effects::expression::TermDefinition;
 use hitch_plant::{AddedEffect, Effect};
-use rayon::prelude::*;
 
 use crate::data::problem::Problem;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::residual_columns::{dot, huber_residuals};
+use crate::parallel;
 
 /// Size of the secant, in typical sizes: large enough for terms with a threshold, small enough for linear scaling.
 const SIZE: f64 = 0.5;
@@ -27,17 +27,14 @@ pub fn best(
     let projection = NuisanceProjection::new(&jacobian, &fit.estimate, 0..0);
     let base: Vec<Vec<f64>> = jacobian.runs.iter().map(|r| r.residual.clone()).collect();
     let left = projection.project(base.clone());
-    let mut ranked: Vec<(f64, &'static TermEffect)> = definitions
-        .into_par_iter()
-        .filter_map(|definition| TermEffect::define(definition).ok())
-        .map(|term| {
-            let (size, moved) = secant(problem, fit, &base, term);
-            (
-                explained(term, size, &left, &projection.project(moved)),
-                term,
-            )
-        })
-        .collect();
+    let terms = definitions
+        .into_iter()
+        .filter_map(|definition| TermEffect::define(definition).ok());
+    let mut ranked: Vec<(f64, &'static TermEffect)> = parallel::map(terms, |term| {
+        let (size, moved) = secant(problem, fit, &base, term);
+        let moved = projection.project(moved);
+        (explained(term, size, &left, &moved), term)
+    });
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.id().cmp(b.1.id())));
     let mut chosen: Vec<&'static TermEffect> = Vec::new();
     for (_, term) in ranked {
