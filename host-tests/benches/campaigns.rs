@@ -5,9 +5,8 @@
 
 use std::hint::black_box;
 use std::path::Path;
-use std::time::Duration;
+use std::time::Instant;
 
-use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use hitch_campaign::Campaign;
 use hitch_identification::data::clocks::Clocks;
 use hitch_identification::data::experiment::Experiment;
@@ -57,7 +56,31 @@ fn measured_on_a_dynamic_rig() -> Campaign {
     campaign
 }
 
-fn simulate_runs(criterion: &mut Criterion) {
+/// Repetitions of a measured task.
+const REPETITIONS: usize = 11;
+
+/// Runs a task several times; prints the smallest, median and largest time, and the samples that the median has in a second.
+fn measure(name: &str, samples: Option<usize>, task: impl Fn()) {
+    let mut seconds: Vec<f64> = (0..REPETITIONS)
+        .map(|_| {
+            let started = Instant::now();
+            task();
+            started.elapsed().as_secs_f64()
+        })
+        .collect();
+    seconds.sort_by(f64::total_cmp);
+    let [least, median, most] =
+        [0, REPETITIONS / 2, REPETITIONS - 1].map(|rank| 1e3 * seconds[rank]);
+    println!("{name}\n  time: {least:.2} ms, {median:.2} ms, {most:.2} ms");
+    if let Some(samples) = samples {
+        println!(
+            "  throughput: {:.2} million samples/s",
+            samples as f64 / median / 1e3
+        );
+    }
+}
+
+fn simulate_runs() {
     let campaign = measured();
     for model in [hitch_model_file::nominal(), hitch_model_file::dynamic()] {
         let experiment = Experiment::new(&campaign, &model);
@@ -67,42 +90,36 @@ fn simulate_runs(criterion: &mut Criterion) {
                 .iter()
                 .filter(|run| run.on_hitch() == on_hitch)
                 .collect();
-            let mut group = criterion.benchmark_group(format!("simulate {kind} runs"));
-            group.throughput(Throughput::Elements(
-                runs.iter().map(|run| run.len() as u64).sum(),
-            ));
-            group.bench_function(&model.name, |bencher| {
-                bencher.iter(|| {
-                    for run in &runs {
-                        let shift = CurrentShift::default();
-                        black_box(run.simulated(&model, Nuisance::default(), shift));
-                    }
-                });
+            let samples = runs.iter().map(|run| run.len()).sum();
+            let name = format!("simulate {kind} runs/{}", model.name);
+            measure(&name, Some(samples), || {
+                for run in &runs {
+                    let shift = CurrentShift::default();
+                    black_box(run.simulated(&model, Nuisance::default(), shift));
+                }
             });
         }
     }
 }
 
-fn explain_campaigns(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("explain");
-    group
-        .sampling_mode(SamplingMode::Flat)
-        .sample_size(10)
-        .measurement_time(Duration::from_secs(30));
+fn explain_campaigns() {
     for (campaign, model) in [
         (lab("known-friction"), hitch_model_file::nominal()),
         (measured_on_a_dynamic_rig(), hitch_model_file::dynamic()),
     ] {
-        group.bench_function(&model.name, |bencher| {
-            bencher.iter(|| {
-                explain(
-                    Problem::new(&Experiment::new(&campaign, &model), black_box(&model)),
-                    &|_| {},
-                )
-            });
+        measure(&format!("explain/{}", model.name), None, || {
+            let experiment = Experiment::new(&campaign, &model);
+            black_box(explain(Problem::new(&experiment, &model), &|_| {}));
         });
     }
 }
 
-criterion_group!(benches, simulate_runs, explain_campaigns);
-criterion_main!(benches);
+fn main() {
+    let selected = std::env::args().nth(1).unwrap_or_default();
+    if "simulate".contains(&selected) || selected.starts_with("--") {
+        simulate_runs();
+    }
+    if "explain".contains(&selected) || selected.starts_with("--") {
+        explain_campaigns();
+    }
+}

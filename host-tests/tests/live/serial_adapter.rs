@@ -4,7 +4,7 @@
 use std::fs;
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
-use std::os::fd::{FromRawFd, IntoRawFd, OwnedFd};
+use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::process::Output;
 use std::thread::{self, JoinHandle, sleep};
@@ -14,7 +14,7 @@ use hitch_campaign::Campaign;
 use hitch_protocols::storage::CalibrationStore;
 use hitch_workbench::ecu::CutFlash;
 use host_tests::program::run;
-use serialport::{SerialPort, TTYPort};
+use serial2::SerialPort;
 
 use crate::running_ecu::{RunningEcu, said};
 
@@ -40,11 +40,11 @@ struct Adapter {
 
 impl Adapter {
     fn between(bus: &str, fate: Fate) -> Self {
-        let (line, host_end) = TTYPort::pair().unwrap();
-        let mut line = closed_on_exec(line);
-        line.set_timeout(TURN).unwrap();
-        let port = host_end.name().unwrap();
-        // The line hangs up while nothing has the host's end open. A port locks it, a file does not.
+        let (mut line, host_end) = SerialPort::pair().unwrap();
+        line.set_read_timeout(TURN).unwrap();
+        let port = fs::read_link(format!("/proc/self/fd/{}", host_end.as_raw_fd())).unwrap();
+        let port = port.to_str().unwrap().to_owned();
+        // The line hangs up while nothing has the host's end open.
         let held = fs::File::options()
             .read(true)
             .write(true)
@@ -78,14 +78,6 @@ impl Adapter {
     fn sent_by_host(self) -> Vec<u8> {
         self.thread.join().unwrap()
     }
-}
-
-/// The same line, which programs started later do not inherit: it hangs up when the adapter drops it.
-fn closed_on_exec(line: TTYPort) -> TTYPort {
-    // SAFETY: each descriptor is open, and has one owner.
-    let inherited = unsafe { OwnedFd::from_raw_fd(line.into_raw_fd()) };
-    let own = inherited.try_clone().unwrap();
-    unsafe { TTYPort::from_raw_fd(own.into_raw_fd()) }
 }
 
 fn received(result: std::io::Result<usize>) -> usize {

@@ -6,6 +6,7 @@
 
 mod change;
 mod cost;
+mod evolution_strategy;
 mod field;
 pub mod figures;
 mod knobs;

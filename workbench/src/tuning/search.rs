@@ -1,11 +1,10 @@
 //! The search for the calibration with the smallest cost, by CMA-ES.
 
 use std::ops::ControlFlow;
-use std::sync::Mutex;
 
-use cmaes::{CMAESOptions, DVector};
 use hitch_quantities::{Calibration, ValidCalibration};
 
+use super::evolution_strategy::EvolutionStrategy;
 use super::figures::Judged;
 use super::knobs::{Least, with_values};
 
@@ -20,39 +19,29 @@ pub fn search(
     knobs: &[&str],
     least: Option<Least>,
     trials: usize,
-    tell: impl Fn(usize, f64) -> ControlFlow<()> + Sync,
-    judge: impl Fn(&ValidCalibration) -> Option<Judged> + Sync,
+    tell: impl Fn(usize, f64) -> ControlFlow<()>,
+    judge: impl Fn(&ValidCalibration) -> Option<Judged>,
 ) -> Option<Judged> {
-    let state = Mutex::new((0, None::<Judged>, false));
     let cost_of =
         |judged: &Option<Judged>| judged.as_ref().map_or(f64::MAX, |one| one.figures.cost);
-    // The method always completes a generation.
-    let is_over = || state.lock().is_ok_and(|state| state.0 >= trials || state.2);
-    let objective = |point: &DVector<f64>| {
-        if is_over() {
-            return f64::MAX;
+    let (mut best, mut judged) = (None::<Judged>, 0);
+    let mut cost = |point: &[f64]| {
+        let candidate = with_values(base, knobs, least, point);
+        let result = candidate.and_then(|candidate| judge(&candidate));
+        let cost = cost_of(&result);
+        if best.is_none() || cost < cost_of(&best) {
+            best = result;
         }
-        let candidate = with_values(base, knobs, least, point.as_slice());
-        let judged = candidate.and_then(|candidate| judge(&candidate));
-        let cost = cost_of(&judged);
-        // No code panics while it holds the lock.
-        if let Ok(mut state) = state.lock() {
-            state.0 += 1;
-            if state.1.is_none() || cost < cost_of(&state.1) {
-                state.1 = judged;
-            }
-            state.2 = tell(state.0, cost_of(&state.1)).is_break();
+        judged += 1;
+        match tell(judged, cost_of(&best)) {
+            ControlFlow::Continue(()) if judged < trials => ControlFlow::Continue(cost),
+            _ => ControlFlow::Break(()),
         }
-        cost
     };
     // The start is a candidate too, so that the result is never worse than it.
-    objective(&DVector::zeros(knobs.len()));
-    let mut search = CMAESOptions::new(vec![0.0; knobs.len()], START_SIGMA)
-        .max_function_evals(trials)
-        .seed(1)
-        .build(objective)
-        .ok()?;
-    search.run();
-    drop(search);
-    state.into_inner().ok()?.1
+    let start = cost(&vec![0.0; knobs.len()]);
+    if start.is_continue() {
+        EvolutionStrategy::new(knobs.len(), START_SIGMA, 1).run(cost);
+    }
+    best
 }

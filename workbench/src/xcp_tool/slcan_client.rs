@@ -6,6 +6,7 @@ use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
 use hitch_protocols::can::{Frame, slcan};
+use serial2::SerialPort;
 
 use super::listen_mode::ListenMode;
 use super::patience::{PATIENCE, SENDS_WITHIN, is_timeout};
@@ -63,7 +64,12 @@ impl SlcanClient {
     /// # Errors
     /// If the port does not exist, is in use, or is not a serial port.
     pub fn open_serial(port: &str) -> io::Result<Self> {
-        let port = serialport::new(port, BAUD).timeout(PATIENCE).open()?;
+        let mut port = SerialPort::open(port, BAUD)?;
+        // Other programs cannot open the line meanwhile; Windows never lets them.
+        #[cfg(unix)]
+        rustix::termios::ioctl_tiocexcl(&port)?;
+        port.set_read_timeout(PATIENCE)?;
+        port.set_write_timeout(PATIENCE)?;
         Ok(Self::on(Box::new(port)))
     }
 
