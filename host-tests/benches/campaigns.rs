@@ -16,7 +16,7 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::data::ready_run::ReadyRun;
 use hitch_identification::explanation::explain::explain;
 use hitch_plant::{AddedEffect, Channel};
-use hitch_workbench::arguments::demonstration;
+use hitch_results::arguments::demonstration;
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;

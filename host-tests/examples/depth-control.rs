@@ -7,8 +7,8 @@ use hitch_field::draft::Texture;
 use hitch_field::soil::SoilPlan;
 use hitch_quantities::Function;
 use hitch_quantities::units::Count;
-use hitch_workbench::field_loop::pass::{DEPTH_M, DRAFT_N, Pass, fitted_with};
-use hitch_workbench::field_loop::undulation::{DepthFigures, drive};
+use hitch_results::field_loop::pass::{DEPTH_M, DRAFT_N, Pass, fitted_with};
+use hitch_results::field_loop::undulation::{DepthFigures, drive};
 
 fn main() {
     let number = |index: usize| {

@@ -2,7 +2,7 @@
 //! and the lag's length of the draft loop: `cargo run -p host-tests --example draft-control -- 8 300 4500 1500`.
 
 use hitch_quantities::Function;
-use hitch_workbench::field_loop::pass::{Comparison, fitted_with};
+use hitch_results::field_loop::pass::{Comparison, fitted_with};
 
 fn main() {
     let number = |index: usize| {

@@ -6,7 +6,7 @@ use hitch_field::body::BodyConstants;
 use hitch_field::terrain::RoughnessConstants;
 use hitch_quantities::Calibration;
 use hitch_quantities::units::{MicrometrePerSecond, Millisecond, PerMille};
-use hitch_workbench::field_loop::transport::{Ride, RideComparison, class_c, damping_with};
+use hitch_results::field_loop::transport::{Ride, RideComparison, class_c, damping_with};
 
 /// A change of the calibration that takes a part away.
 type Ablation = (&'static str, fn(&mut Calibration));

@@ -7,9 +7,9 @@ use anyhow::Result;
 use fastrand::Rng;
 use hitch_ecu::link::{Reply, Request, frame_to_bytes};
 use hitch_ecu::{AdcCode, Contact, Contacts, Panel, Samples};
+use hitch_ecu_host::ecu::{Bench, CutFlash, EcuMachine, OnHost, Operator};
 use hitch_protocols::can::{ExtendedId, Frame, Id, StandardId};
 use hitch_quantities::{State, Trip};
-use hitch_workbench::ecu::{Bench, CutFlash, EcuMachine, OnHost, Operator};
 
 /// Inputs and outputs of the ECU as bytes on its link, and its flash at the end.
 #[derive(Debug, Default)]

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 use std::{env, fs};
 
 use anyhow::{Context, Result, bail, ensure};
+use hitch_ecu_host::ecu::{IMAGE_VARIABLE, Mode, emulator_command};
 use hitch_quantities::signals::{INPUT_BYTES, OUTPUT_BYTES};
-use hitch_workbench::ecu::{IMAGE_VARIABLE, Mode, emulator_command};
 
 /// Far longer than any trace takes; an image that hangs must not hang the tests.
 const PATIENCE: Duration = Duration::from_secs(900);

@@ -5,8 +5,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use hitch_ecu::{AdcCode, Contact, Contacts};
-use hitch_workbench::ecu::slcan_server::SlcanServer;
-use hitch_workbench::ecu::{Bench, Bus, EcuMachine, Order};
+use hitch_ecu_host::ecu::slcan_server::SlcanServer;
+use hitch_ecu_host::ecu::{Bench, Bus, EcuMachine, Order};
 
 /// Actions of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

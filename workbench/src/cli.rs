@@ -6,8 +6,7 @@ use crate::commands::{
     effects, explain, export_fmu, flash_calibration, import, loop_, main_job, man, model, record,
     schema, serve, simulate, summary, tune,
 };
-use crate::error::Error;
-use crate::output;
+use hitch_output::error::Error;
 
 /// The electro-hydraulic hitch: measurement -> physics -> firmware -> motion.
 #[derive(Debug, Parser)]
@@ -121,7 +120,7 @@ pub fn run<I: IntoIterator<Item = std::ffi::OsString>>(arguments: I) -> Result<(
             ..
         }) => command.run(),
         Ok(Cli { main_job, .. }) => main_job::run(&main_job),
-        Err(error) if !error.use_stderr() => output::print(&error.render().to_string()),
+        Err(error) if !error.use_stderr() => hitch_output::print(&error.render().to_string()),
         Err(error) => Err(Error::Usage(one_line(&error.render().to_string()))),
     }
 }
@@ -175,7 +174,7 @@ mod tests {
         let command = Cli::command();
         let tune = command.find_subcommand("tune").unwrap();
         let help = tune.get_after_help().unwrap().to_string();
-        for knob in crate::tuning::KNOBS {
+        for knob in hitch_results::tuning::KNOBS {
             let (_, name) = knob.split_once('.').unwrap();
             assert!(help.contains(name), "{knob}: {help}");
         }

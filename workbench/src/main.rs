@@ -1,7 +1,7 @@
 //! `hitch`: measurement -> physics -> firmware -> motion.
 use std::process::ExitCode;
 
-use hitch_workbench::text::colour::BAD;
+use hitch_output::text::colour::BAD;
 
 fn main() -> ExitCode {
     match hitch_workbench::cli::run(std::env::args_os()) {

@@ -19,7 +19,7 @@ struct Layers {
 }
 
 /// The checked crates; add an entry for a new one.
-const CRATES: [Layers; 12] = [
+const CRATES: [Layers; 14] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -137,10 +137,12 @@ const CRATES: [Layers; 12] = [
         order: &[&["bench"], &["abi"]],
     },
     Layers {
-        sources: "workbench/src",
+        sources: "workbench/ecu-host/src",
+        order: &[&["xcp_tool"], &["ecu"]],
+    },
+    Layers {
+        sources: "workbench/results/src",
         order: &[
-            &["error", "text"],
-            &["output"],
             &["arguments", "web"],
             &["base_model"],
             &[
@@ -151,16 +153,15 @@ const CRATES: [Layers; 12] = [
                 "fleet_summary",
                 "fmu_export",
                 "import",
-                "xcp_tool",
             ],
             &["field_loop"],
-            &["ecu", "tuning"],
+            &["tuning"],
             &["report"],
-            &["serve"],
-            &["commands"],
-            &["cli"],
-            &["main"],
         ],
+    },
+    Layers {
+        sources: "workbench/src",
+        order: &[&["commands"], &["cli"], &["main"]],
     },
 ];
 

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use arm_build::{process, setup, workspace};
 
 /// What is checked, and how, from the workspace's root.
-const PROJECT: &str = "workbench/src/jsconfig.json";
+const PROJECT: &str = "workbench/jsconfig.json";
 
 /// Name and text of each file that pins the compiler.
 const PINNED: [(&str, &str); 2] = [

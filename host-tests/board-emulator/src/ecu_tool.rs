@@ -2,10 +2,10 @@
 
 use anyhow::{Result, ensure};
 use hitch_ecu::Contact;
+use hitch_ecu_host::ecu::{Bench, EcuMachine};
 use hitch_protocols::can::{ExtendedId, Frame};
 use hitch_protocols::xcp::map::CALIBRATION_BASE;
 use hitch_quantities::calibration::calibration_words::{GROUPS, SCALARS_WORD};
-use hitch_workbench::ecu::{Bench, EcuMachine};
 
 /// Milliseconds after which an ECU has its address: it waits 250 after its claim.
 const CLAIMED_MS: u32 = 300;

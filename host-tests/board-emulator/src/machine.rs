@@ -7,8 +7,8 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 use hitch_ecu::link::Reply;
 use hitch_ecu::{BoardScaling, Contacts, Panel, Signal};
+use hitch_ecu_host::ecu::{EcuMachine, MachineError};
 use hitch_protocols::can::Frame;
-use hitch_workbench::ecu::{EcuMachine, MachineError};
 
 use super::chip::{Chip, Stop};
 use super::conditions::Conditions;

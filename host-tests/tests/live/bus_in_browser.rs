@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{scope, sleep};
 use std::time::Duration;
 
-use hitch_workbench::ecu::slcan_server::SlcanServer;
-use hitch_workbench::ecu::{CutFlash, OnHost};
+use hitch_ecu_host::ecu::slcan_server::SlcanServer;
+use hitch_ecu_host::ecu::{CutFlash, OnHost};
 use host_tests::live_ecu::{self, Operator};
 use host_tests::page_server::PageServer;
 use host_tests::python::{environment, run, scripts};

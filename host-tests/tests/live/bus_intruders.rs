@@ -4,9 +4,9 @@
 //! angle is that of the plant, not what the ECU reports.
 
 use hitch_ecu::BoardScaling;
+use hitch_ecu_host::ecu::{CutFlash, OnHost, delivered};
 use hitch_quantities::calibration::fitted::Fitted;
 use hitch_quantities::{Calibration, ValidCalibration};
-use hitch_workbench::ecu::{CutFlash, OnHost, delivered};
 use host_tests::live_ecu::{Operator, START_DEG};
 
 use crate::python_clients::run_client;

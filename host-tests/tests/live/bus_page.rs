@@ -9,8 +9,8 @@ use std::sync::{Arc, Mutex};
 use std::thread::{JoinHandle, sleep, spawn};
 use std::time::{Duration, Instant};
 
-use hitch_workbench::ecu::slcan_server::SlcanServer;
-use hitch_workbench::ecu::{CutFlash, OnHost};
+use hitch_ecu_host::ecu::slcan_server::SlcanServer;
+use hitch_ecu_host::ecu::{CutFlash, OnHost};
 use host_tests::live_ecu::{self, Operator};
 use host_tests::page_server::{Answer, PageServer};
 use host_tests::program::run;

@@ -5,7 +5,7 @@ use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use hitch_workbench::ecu::{IMAGE_VARIABLE, find_image};
+use hitch_ecu_host::ecu::{IMAGE_VARIABLE, find_image};
 use host_tests::loop_tab::LoopTab;
 use host_tests::page_server::{Answer, PageServer};
 use host_tests::program::{hitch, run};

@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use hitch_workbench::ecu::find_image;
+use hitch_ecu_host::ecu::find_image;
 use host_tests::program::hitch;
 
 use crate::running_ecu::started;

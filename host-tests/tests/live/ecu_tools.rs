@@ -6,8 +6,8 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use hitch_campaign::Campaign;
+use hitch_ecu_host::ecu::CutFlash;
 use hitch_protocols::storage::CalibrationStore;
-use hitch_workbench::ecu::CutFlash;
 use host_tests::program::{hitch, run};
 
 use crate::running_ecu::{RunningEcu, said};

@@ -4,7 +4,7 @@
 
 use std::sync::LazyLock;
 
-use hitch_workbench::ecu::Mode;
+use hitch_ecu_host::ecu::Mode;
 use host_tests::emulator::{self, EmulatedRun, instructions};
 use host_tests::instruction_counts;
 use host_tests::replay;

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use board_emulator::ecu_tool;
 use hitch_ecu::link::{FRAME_BYTES, REPLY_BYTES, Reply};
+use hitch_ecu_host::ecu::{Bench, CALIBRATION_BYTES, CutFlash, Emulator, Mode, delivered};
 use hitch_protocols::storage::{CalibrationStore, Source};
 use hitch_quantities::ValidCalibration;
-use hitch_workbench::ecu::{Bench, CALIBRATION_BYTES, CutFlash, Emulator, Mode, delivered};
 use host_tests::seeds::cases;
 use host_tests::{ecu_day, emulator};
 

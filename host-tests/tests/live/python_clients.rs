@@ -11,9 +11,9 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hitch_campaign::{Campaign, Run};
+use hitch_ecu_host::ecu::slcan_server::SlcanServer;
+use hitch_ecu_host::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
 use hitch_plant::Channel;
-use hitch_workbench::ecu::slcan_server::SlcanServer;
-use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
 use host_tests::live_ecu::{self, Operator};
 use host_tests::program::hitch;
 use host_tests::python::{installed, run, scripts};

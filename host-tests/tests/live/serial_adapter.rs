@@ -11,8 +11,8 @@ use std::thread::{self, JoinHandle, sleep};
 use std::time::Duration;
 
 use hitch_campaign::Campaign;
+use hitch_ecu_host::ecu::CutFlash;
 use hitch_protocols::storage::CalibrationStore;
-use hitch_workbench::ecu::CutFlash;
 use host_tests::program::run;
 use serial2::SerialPort;
 

@@ -7,8 +7,8 @@ use hitch_effects::find;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::units::{MicrometrePerSecond, PerMille};
 use hitch_quantities::{Calibration, ValidCalibration};
-use hitch_workbench::closed_loop::show::text;
-use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
+use hitch_results::closed_loop::show::text;
+use hitch_results::closed_loop::{LoopRun, Scenario, run};
 
 fn nominal() -> ValidCalibration {
     Calibration::nominal().validate().unwrap()

@@ -7,8 +7,8 @@ use hitch_field::terrain::Terrain;
 use hitch_field::tractor::TractorConstants;
 use hitch_quantities::units::{Count, PerMille, SupplyShare};
 use hitch_quantities::{Function, Inputs, Reason, Trouble, ValidCalibration};
-use hitch_workbench::field_loop::pass::{DEPTH_M, DRAFT_N, SPEED_M_S, fitted_with};
-use hitch_workbench::field_loop::undulation::{self, DepthFigures};
+use hitch_results::field_loop::pass::{DEPTH_M, DRAFT_N, SPEED_M_S, fitted_with};
+use hitch_results::field_loop::undulation::{self, DepthFigures};
 use host_tests::seeds::cases;
 
 use crate::beyond::Motion;

@@ -10,7 +10,7 @@ use hitch_quantities::units::{
     Count, Micrometre, MillimetrePerSecond, Newton, PerMille, SupplyShare,
 };
 use hitch_quantities::{Calibration, Function, Inputs, Reason, Trouble, ValidCalibration};
-use hitch_workbench::field_loop::pass::{Comparison, DRAFT_N, Pass, fitted, fitted_with};
+use hitch_results::field_loop::pass::{Comparison, DRAFT_N, Pass, fitted, fitted_with};
 use host_tests::seeds::cases;
 use host_tests::trace;
 

@@ -2,9 +2,9 @@
 //! hardly moves, and the drift is reported.
 
 use hitch_ecu::{AdcCode, Contacts, Samples};
+use hitch_ecu_host::ecu::{Bench, CutFlash, Moment, OnHost, delivered};
 use hitch_plant::Model;
 use hitch_quantities::{Fault, State, ValidCalibration};
-use hitch_workbench::ecu::{Bench, CutFlash, Moment, OnHost, delivered};
 
 const START_DEG: f64 = 90.0;
 /// The lever goes here first, degree.

@@ -8,7 +8,7 @@ use hitch_field::terrain::Terrain;
 use hitch_field::tractor::TractorConstants;
 use hitch_quantities::units::{MilliDegree, PerMille, SupplyShare};
 use hitch_quantities::{Function, Inputs, Reason, State, Trouble};
-use hitch_workbench::field_loop::pass::{DRAFT_N, SPEED_M_S, fitted};
+use hitch_results::field_loop::pass::{DRAFT_N, SPEED_M_S, fitted};
 use host_tests::seeds::cases;
 use host_tests::trace;
 

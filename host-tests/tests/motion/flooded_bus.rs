@@ -2,10 +2,10 @@
 
 use fastrand::Rng;
 use hitch_ecu::link::Reply;
+use hitch_ecu_host::ecu::{Bench, CutFlash, OnHost, Order};
 use hitch_protocols::can::{ExtendedId, Frame, StandardId};
 use hitch_protocols::j1939::Pgn;
 use hitch_protocols::xcp::TOOL_ADDRESS;
-use hitch_workbench::ecu::{Bench, CutFlash, OnHost, Order};
 
 const ECU: u8 = 0x80;
 const DURATION_MS: u32 = 20_000;

@@ -7,7 +7,7 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Verdict, explain};
 use hitch_plant::AddedEffect;
 use hitch_quantities::{Calibration, ValidCalibration};
-use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
+use hitch_results::closed_loop::{LoopRun, Scenario, run};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use truth_rigs::simulated_lab::campaign;

@@ -7,7 +7,7 @@ use hitch_closed_loop::calibrate::calibrate;
 use hitch_effects::CATALOGUE;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::{Calibration, Fault, ValidCalibration};
-use hitch_workbench::closed_loop::{Move, OIL_TEMPERATURE_C, run};
+use hitch_results::closed_loop::{Move, OIL_TEMPERATURE_C, run};
 use truth_rigs::drawn_hitches::draw::{Drawn, Readings};
 use truth_rigs::drawn_hitches::session::drive;
 use truth_rigs::second_rig::driven_hitch::Conditions;

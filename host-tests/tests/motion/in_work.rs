@@ -9,7 +9,7 @@ use hitch_field::terrain::Terrain;
 use hitch_field::tractor::TractorConstants;
 use hitch_quantities::units::{MilliDegree, PerMille};
 use hitch_quantities::{Calibration, Function, State, ValidCalibration};
-use hitch_workbench::field_loop::pass::{DRAFT_N, SPEED_M_S, fitted_with};
+use hitch_results::field_loop::pass::{DRAFT_N, SPEED_M_S, fitted_with};
 use host_tests::seeds::cases;
 
 /// The threshold is where the share touches the ground.

@@ -1,7 +1,7 @@
 //! Motion compared with the limits of the plant, with typical hysteresis, friction, spool lag and air, cold oil, and
 //! threshold offsets of 0.1 A, after teaching.
 
-use hitch_workbench::closed_loop::{MoveResult, Scenario, Summary, run};
+use hitch_results::closed_loop::{MoveResult, Scenario, Summary, run};
 use host_tests::seeds::cases;
 use host_tests::teaching::{taught_calibration, typical};
 

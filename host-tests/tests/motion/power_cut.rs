@@ -2,10 +2,10 @@
 
 use board_emulator::ecu_tool;
 use fastrand::Rng;
+use hitch_ecu_host::ecu::{Bench, CutFlash, OnHost, delivered};
 use hitch_plant::Model;
 use hitch_protocols::storage::{CalibrationStore, Source};
 use hitch_quantities::{State, ValidCalibration};
-use hitch_workbench::ecu::{Bench, CutFlash, OnHost, delivered};
 
 const LOAD_KG: f64 = 200.0;
 const OIL_TEMPERATURE_C: f64 = 40.0;

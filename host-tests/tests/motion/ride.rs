@@ -4,7 +4,7 @@ use hitch_closed_loop::field::RAISED_DEG;
 use hitch_field::body::BodyConstants;
 use hitch_quantities::units::MilliBar;
 use hitch_quantities::{Inputs, Reason};
-use hitch_workbench::field_loop::transport::{
+use hitch_results::field_loop::transport::{
     Ride, RideComparison, RideSample, TransportRig, class_c, damping_with,
 };
 use host_tests::seeds::cases;

@@ -1,10 +1,10 @@
 //! From power-up the enable line of the coil drivers is low until the lever capture, under all conditions.
 
 use hitch_ecu::{Contact, Panel};
+use hitch_ecu_host::ecu::{Bench, CutFlash, Moment, OnHost, delivered};
 use hitch_plant::Model;
 use hitch_protocols::can::{ExtendedId, Frame};
 use hitch_quantities::{State, ValidCalibration};
-use hitch_workbench::ecu::{Bench, CutFlash, Moment, OnHost, delivered};
 
 const START_DEG: f64 = 90.0;
 const IDLE_MS: u32 = 2_000;

@@ -5,7 +5,7 @@ use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_plant::Model;
 use hitch_quantities::units::MilliDegree;
 use hitch_quantities::{Inputs, State};
-use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
+use hitch_results::closed_loop::{LoopRun, Scenario, run};
 use host_tests::seeds::cases;
 use host_tests::teaching::{dynamic_with, nominal, teach as taught, teach_with as taught_with};
 

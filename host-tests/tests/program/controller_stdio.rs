@@ -253,7 +253,7 @@ fn a_missing_angle_is_a_fault_and_not_an_error() {
 fn draft_reason_and_lost_sensor_are_answered_where_the_columns_are() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("fitted.toml");
-    let fitted = hitch_workbench::field_loop::pass::fitted_with(|calibration| {
+    let fitted = hitch_results::field_loop::pass::fitted_with(|calibration| {
         calibration.slip.highest_limit.0 = 0;
         calibration.work.angle.0 = 95_000;
     });

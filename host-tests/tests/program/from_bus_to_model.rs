@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::fs;
 
 use hitch_controller_host::calibration_file;
+use hitch_ecu_host::ecu::{Bench, CutFlash, OnHost, Order, delivered};
 use hitch_quantities::Calibration;
-use hitch_workbench::ecu::{Bench, CutFlash, OnHost, Order, delivered};
 use host_tests::program::run;
 use host_tests::teaching::dynamic_with;
 

@@ -174,7 +174,7 @@ fn a_calibration_that_became_worse_is_written_only_by_force() {
         "--out",
         "tuned.toml",
     ];
-    let fixed: Vec<String> = hitch_workbench::tuning::KNOBS
+    let fixed: Vec<String> = hitch_results::tuning::KNOBS
         .iter()
         .filter(|knob| **knob != "hydraulics.hysteresis")
         .map(|knob| {

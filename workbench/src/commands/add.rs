@@ -13,15 +13,14 @@ use hitch_identification::selection::evidence::SIGNIFICANT;
 use hitch_identification::selection::leave_one_out::{LeaveOneOut, leave_one_out};
 use hitch_plant::{Effect, Model, full_name};
 
-use crate::arguments::baseline::BaselineArg;
-use crate::arguments::effect::find;
-use crate::arguments::model::ModelArg;
-use crate::error::Error;
-use crate::explanation::{Base, Posed, UNSUITABLE_BASE, parameters, rebuilt};
-use crate::output;
-use crate::output::progress::Progress;
-use crate::output::targets::{Outputs, campaign_files};
-use crate::text::{indented, joined, wrapped};
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::{Outputs, campaign_files};
+use hitch_output::text::{indented, joined, wrapped};
+use hitch_results::arguments::baseline::BaselineArg;
+use hitch_results::arguments::effect::find;
+use hitch_results::arguments::model::ModelArg;
+use hitch_results::explanation::{Base, Posed, UNSUITABLE_BASE, parameters, rebuilt};
 
 /// Arguments of `hitch add`.
 #[derive(Debug, clap::Args)]
@@ -66,8 +65,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     progress.say("evaluating each effect with the others present");
     let weighed = leave_one_out(Problem::new(&experiment, &model), &fit, model.effects.len());
     drop(progress);
-    let rebuilt = rebuilt(&model, &fit.estimate, output::stem(&args.out));
-    output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
+    let rebuilt = rebuilt(&model, &fit.estimate, hitch_output::stem(&args.out));
+    hitch_output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
     let mut text = if is_unsuitable(&experiment, &base, &fit) {
         format!("{}\n\n", wrapped(UNSUITABLE_BASE))
     } else {

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use hitch_identification::search::options::{Accuracy, Options};
 
-use crate::arguments::model::ModelArg;
-use crate::arguments::search::SearchArgs;
-use crate::arguments::tolerances::ToleranceArgs;
-use crate::error::Error;
-use crate::explanation::{Base, Found, Posed, saving};
-use crate::output::targets::{Outputs, campaign_files};
-use crate::output::{self, JsonArg};
-use crate::report::explanation_page;
-use crate::text::{shell_word, wrapped};
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::targets::{Outputs, campaign_files};
+use hitch_output::text::{shell_word, wrapped};
+use hitch_results::arguments::model::ModelArg;
+use hitch_results::arguments::search::SearchArgs;
+use hitch_results::arguments::tolerances::ToleranceArgs;
+use hitch_results::explanation::{Base, Found, Posed, saving};
+use hitch_results::report::explanation_page;
 
 /// Arguments of `hitch adopt`.
 #[derive(Debug, clap::Args)]
@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     };
     let found = Found::new(experiment, model, options, &improved);
     found.write_model(Some(&args.out))?;
-    output::write_if(args.report.as_ref(), || explanation_page::page(&found))?;
+    hitch_output::write_if(args.report.as_ref(), || explanation_page::page(&found))?;
     outputs.tell(&args.json, &found.shown, || {
         let next = format!(
             "Next, after a change: hitch explain NEW --model {} --baseline {}",

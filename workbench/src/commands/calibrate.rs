@@ -6,13 +6,12 @@ use hitch_controller_host::calibration_file;
 use hitch_quantities::calibration::valve_table::ValveTable;
 
 use super::loop_::{calibration, read_files};
-use crate::draft::read_working;
-use crate::error::Error;
-use crate::output;
-use crate::output::targets::Outputs;
-use crate::text::indented;
 use hitch_closed_loop::calibrate::working::with_draft;
 use hitch_closed_loop::calibrate::{calibrate, carried};
+use hitch_output::error::Error;
+use hitch_output::targets::Outputs;
+use hitch_output::text::indented;
+use hitch_results::draft::read_working;
 
 /// Arguments of `hitch calibrate`.
 #[derive(Debug, clap::Args)]
@@ -54,7 +53,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
             with_draft(&model, &calibration, &read_working(path)?).map_err(refused)?;
         of_draft.push(NOT_FROM_A_DRAFT.to_owned());
     }
-    output::write_file(&args.out, calibration_file::write(&calibration).as_bytes())?;
+    hitch_output::write_file(&args.out, calibration_file::write(&calibration).as_bytes())?;
     let mut text = format!("{} -> {}\n", model.name, args.out.display());
     for (name, table, before) in [
         ("lift", &calibration.lift, &base.lift),

@@ -10,17 +10,17 @@ use hitch_plant::Model;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::arguments::model::ModelArg;
-use crate::arguments::search::SearchArgs;
 use crate::commands::fleet::FleetArgs;
-use crate::error::Error;
-use crate::explanation::{Explanation, Found, Since};
-use crate::output::progress::Progress;
-use crate::output::targets::{Outputs, campaign_files};
-use crate::output::{self, JsonArg};
-use crate::report::changes_page;
-use crate::text::colour::sigma;
-use crate::text::wrapped;
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::{Outputs, campaign_files};
+use hitch_output::text::colour::sigma;
+use hitch_output::text::wrapped;
+use hitch_results::arguments::model::ModelArg;
+use hitch_results::arguments::search::SearchArgs;
+use hitch_results::explanation::{Explanation, Found, Since};
+use hitch_results::report::changes_page;
 
 /// Arguments of `hitch changes`.
 #[derive(Debug, clap::Args)]
@@ -116,7 +116,7 @@ fn one(args: &Args, new: &Path) -> Result<(), Error> {
     let adopted = Adopted::new(&baseline, &model, options, &progress(&baseline));
     let (changes, new) = adopted.changes(&new, args.search.options(), &progress(&new));
     new.write_model(args.out.as_ref())?;
-    output::write_if(args.report.as_ref(), || {
+    hitch_output::write_if(args.report.as_ref(), || {
         changes_page::page(&changes.baseline, &new)
     })?;
     outputs.tell(&args.json, &changes, || changes.to_string())

@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 use hitch_campaign::Campaign;
 use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 
-use crate::arguments::baseline::BaselineArg;
-use crate::arguments::model::ModelArg;
-use crate::arguments::next_command::{self, Standing};
 use crate::commands::fleet::FleetArgs;
-use crate::comparison::Comparison;
-use crate::error::Error;
-use crate::output::progress::Progress;
-use crate::output::targets::{Outputs, campaign_files};
-use crate::output::{self, JsonArg};
-use crate::report::comparison_page;
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::{Outputs, campaign_files};
+use hitch_results::arguments::baseline::BaselineArg;
+use hitch_results::arguments::model::ModelArg;
+use hitch_results::arguments::next_command::{self, Standing};
+use hitch_results::comparison::Comparison;
+use hitch_results::report::comparison_page;
 
 /// Arguments of `hitch compare`.
 #[derive(Debug, clap::Args)]
@@ -69,7 +69,7 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     let progress = Progress::start(format!("comparing {} with {}", model.name, campaign.name));
     let (comparison, evaluated) = Comparison::new(&campaign, &model);
     drop(progress);
-    output::write_if(args.report.as_ref(), || {
+    hitch_output::write_if(args.report.as_ref(), || {
         comparison_page::page(&comparison, &evaluated, &model)
     })?;
     let fit = &evaluated.fit;

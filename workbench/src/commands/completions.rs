@@ -2,8 +2,7 @@
 
 use clap_complete::Shell;
 
-use crate::error::Error;
-use crate::output;
+use hitch_output::error::Error;
 
 /// Arguments of `hitch completions`.
 #[derive(Debug, clap::Args)]
@@ -24,5 +23,5 @@ pub struct Args {
 pub fn run(args: &Args, mut hitch: clap::Command) -> Result<(), Error> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut hitch, "hitch", &mut script);
-    output::print(&String::from_utf8_lossy(&script))
+    hitch_output::print(&String::from_utf8_lossy(&script))
 }

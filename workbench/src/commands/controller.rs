@@ -12,8 +12,8 @@ use hitch_quantities::{Outputs, Reason, Trouble};
 
 use super::loop_::calibration;
 use crate::commands::controller::input_stream::{Columns, LineError};
-use crate::error::Error;
-use crate::output::{self, targets};
+use hitch_output::error::Error;
+use hitch_output::targets;
 
 /// Header of the output.
 const HEADER: &str = "lift_current_a,lower_current_a,state";
@@ -55,7 +55,7 @@ pub struct Args {
 /// # Errors
 /// If the calibration or a line is invalid, or standard output is closed.
 pub fn run(args: &Args) -> Result<(), Error> {
-    output::no_stdout(
+    hitch_output::no_stdout(
         "--out",
         args.out.as_deref(),
         "standard output has the answers",
@@ -103,7 +103,7 @@ pub fn serve(
             let outputs = controller.step(&inputs);
             let found = teaching.follow(&mut controller, outputs.state);
             if let (Some(path), Some(found)) = (taught, found) {
-                output::write_file(path, calibration_file::write(&found).as_bytes())?;
+                hitch_output::write_file(path, calibration_file::write(&found).as_bytes())?;
             }
             let mut reply = reply(&outputs, &controller);
             if has_field {

@@ -6,16 +6,16 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::diagnosis::diagnose;
 use hitch_identification::explanation::explain::fit_base;
 
-use crate::arguments::baseline::BaselineArg;
-use crate::arguments::model::ModelArg;
-use crate::arguments::next_command::{self, Standing};
 use crate::commands::next_folder::NextFolder;
-use crate::error::Error;
-use crate::explanation::{Base, Diagnosis, Head, Posed};
-use crate::output::progress::Progress;
-use crate::output::targets::{Outputs, campaign_files};
-use crate::output::{self, JsonArg};
-use crate::report::diagnosis_page;
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::{Outputs, campaign_files};
+use hitch_results::arguments::baseline::BaselineArg;
+use hitch_results::arguments::model::ModelArg;
+use hitch_results::arguments::next_command::{self, Standing};
+use hitch_results::explanation::{Base, Diagnosis, Head, Posed};
+use hitch_results::report::diagnosis_page;
 
 /// Arguments of `hitch diagnose`.
 #[derive(Debug, clap::Args)]
@@ -60,7 +60,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     });
     let shown = Diagnosis::new(&experiment, &model, &found);
     drop(progress);
-    output::write_if(args.report.as_ref(), || {
+    hitch_output::write_if(args.report.as_ref(), || {
         diagnosis_page::page(&shown, &found, &experiment, &model)
     })?;
     let written = args.next.write(&shown.next)?;

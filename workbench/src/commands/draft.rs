@@ -6,11 +6,11 @@ use hitch_draft::fit::fit;
 use hitch_draft::manifest::Campaign;
 use hitch_input::input_error::InputError;
 
-use crate::draft::{DraftResult, write_example};
-use crate::error::Error;
-use crate::output::targets::{Outputs, campaign_files};
-use crate::output::{self, JsonArg};
-use crate::report::draft_page;
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::targets::{Outputs, campaign_files};
+use hitch_results::draft::{DraftResult, write_example};
+use hitch_results::report::draft_page;
 
 /// Arguments of `hitch draft`.
 #[derive(Debug, clap::Args)]
@@ -39,7 +39,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     if let Some(seed) = args.example {
         write_example(&args.folder, seed)?;
-        return output::print(&format!("{}\n", args.folder.display()));
+        return hitch_output::print(&format!("{}\n", args.folder.display()));
     }
     let inputs = campaign_files(&args.folder);
     let outputs = Outputs::check([args.json.target(), args.report.as_deref()], &inputs)?;
@@ -53,6 +53,6 @@ pub fn run(args: &Args) -> Result<(), Error> {
         )
     })?;
     let result = DraftResult::of(&campaign, fit);
-    output::write_if(args.report.as_ref(), || draft_page::page(&result))?;
+    hitch_output::write_if(args.report.as_ref(), || draft_page::page(&result))?;
     outputs.tell(&args.json, &result, || result.to_string())
 }

@@ -13,16 +13,16 @@ use hitch_plant::Model;
 use hitch_protocols::can::Frame;
 
 use super::loop_::calibration;
-use crate::arguments::number::{LOADS_KG, number};
 use crate::commands::ecu::status_line::StatusLine;
-use crate::ecu::slcan_server::SlcanServer;
-use crate::ecu::{
+use hitch_ecu_host::ecu::slcan_server::SlcanServer;
+use hitch_ecu_host::ecu::{
     Bench, Bus, CutFlash, EcuMachine, FLASH_BYTES, MachineError, Order, PICK_UP_MS, Pace, Runner,
     delivered, reach_deg,
 };
-use crate::error::Error;
-use crate::output::{check_writable, no_stdout, write_file};
-use crate::xcp_tool::read_key;
+use hitch_ecu_host::xcp_tool::read_key;
+use hitch_output::error::Error;
+use hitch_output::{check_writable, no_stdout, write_file};
+use hitch_results::arguments::number::{LOADS_KG, number};
 
 /// Arguments of `hitch ecu`.
 #[derive(Debug, clap::Args)]

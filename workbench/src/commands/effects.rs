@@ -7,12 +7,12 @@ use std::fmt::Write as _;
 pub use catalogue::Catalogue;
 use hitch_plant::{Effect, Model, full_name};
 
-use crate::arguments::effect::find;
-use crate::arguments::model::ModelArg;
-use crate::error::Error;
-use crate::output::targets::Outputs;
-use crate::output::{self, JsonArg};
-use crate::text::{Table, indented, joined, wrapped};
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::targets::Outputs;
+use hitch_output::text::{Table, indented, joined, wrapped};
+use hitch_results::arguments::effect::find;
+use hitch_results::arguments::model::ModelArg;
 
 /// Arguments of `hitch effects`.
 #[derive(Debug, clap::Args)]
@@ -41,7 +41,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
             let what = "--formulas is a text for people; --json writes the effects";
             return Err(Error::Usage(what.to_owned()));
         }
-        return output::print(&formulas::text());
+        return hitch_output::print(&formulas::text());
     }
     let outputs = Outputs::check([args.json.target()], &[args.model.file()])?;
     let model = args.model.load()?;

@@ -2,18 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::arguments::baseline::BaselineArg;
-use crate::arguments::model::ModelArg;
-use crate::arguments::next_command;
-use crate::arguments::search::SearchArgs;
 use crate::commands::fleet::FleetArgs;
 use crate::commands::next_folder::NextFolder;
-use crate::error::Error;
-use crate::explanation::{Base, Found, Posed, saving};
-use crate::output::progress::Progress;
-use crate::output::targets::{Outputs, campaign_files};
-use crate::output::{self, JsonArg};
-use crate::report::explanation_page;
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::{Outputs, campaign_files};
+use hitch_results::arguments::baseline::BaselineArg;
+use hitch_results::arguments::model::ModelArg;
+use hitch_results::arguments::next_command;
+use hitch_results::arguments::search::SearchArgs;
+use hitch_results::explanation::{Base, Found, Posed, saving};
+use hitch_results::report::explanation_page;
 
 /// Arguments of `hitch explain`.
 #[derive(Debug, clap::Args)]
@@ -95,10 +95,13 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     let improved = saving(&model, args.out.as_deref());
     let found = Found::new(experiment, model, options, &improved);
     found.write_model(args.out.as_ref())?;
-    output::write_if(args.report.as_ref(), || explanation_page::page(&found))?;
+    hitch_output::write_if(args.report.as_ref(), || explanation_page::page(&found))?;
     let written = args.next.write(&found.shown.next)?;
     outputs.tell(&args.json, &found.shown, || {
-        let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
+        let out = args
+            .out
+            .as_deref()
+            .filter(|path| !hitch_output::is_stdout(path));
         let next = next_command::after_explanation(out, folder, &args.model, &args.baseline);
         format!("{}\n{written}{next}", found.shown)
     })

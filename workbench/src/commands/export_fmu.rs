@@ -9,10 +9,10 @@ use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 
 use super::loop_::{calibration, read_files};
-use crate::error::Error;
-use crate::output::progress::Progress;
-use crate::output::targets::Outputs;
-use crate::{fmu_export, output};
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::Outputs;
+use hitch_results::fmu_export;
 
 /// Arguments of `hitch export-fmu`.
 #[derive(Debug, clap::Args)]
@@ -42,7 +42,7 @@ pub struct Args {
 /// # Errors
 /// If the model or the calibration is wrong, the shared library is missing, or the unit cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    output::no_stdout("--out", Some(&args.out), "a unit is no text")?;
+    hitch_output::no_stdout("--out", Some(&args.out), "a unit is no text")?;
     let inputs = read_files(&args.model, args.calibration.as_ref());
     Outputs::check([Some(args.out.as_path())], &inputs)?;
     let (kind, file) = args.content()?;
@@ -50,7 +50,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let progress = Progress::start(format!("writing {}", args.out.display()));
     let unit = fmu_export::archive(kind, &file, &library)?;
     drop(progress);
-    output::write_file(&args.out, &unit)
+    hitch_output::write_file(&args.out, &unit)
 }
 
 impl Args {

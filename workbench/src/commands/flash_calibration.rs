@@ -3,10 +3,9 @@ use std::path::PathBuf;
 
 use hitch_controller_host::calibration_file;
 
-use crate::error::Error;
-use crate::output;
-use crate::output::progress::Progress;
-use crate::xcp_tool::{BusAddress, read_key, write_to};
+use hitch_ecu_host::xcp_tool::{BusAddress, read_key, write_to};
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
 
 /// Arguments of `hitch flash-calibration`.
 #[derive(Debug, clap::Args)]
@@ -38,7 +37,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let progress = Progress::start("writing the calibration");
     let written = write_to(&args.can, &calibration, key.as_ref())?;
     drop(progress);
-    output::print(&format!(
+    hitch_output::print(&format!(
         "{} of {} values changed; stored and verified.\n",
         written.changed, written.words
     ))

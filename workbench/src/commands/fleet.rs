@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 
-use crate::error::Error;
-use crate::output::is_stdout;
-use crate::output::progress::Progress;
-use crate::output::targets::{Outputs, campaign_files};
+use hitch_output::error::Error;
+use hitch_output::is_stdout;
+use hitch_output::progress::Progress;
+use hitch_output::targets::{Outputs, campaign_files};
 
 pub use line::{Line, Success};
 use lines_file::LinesFile;

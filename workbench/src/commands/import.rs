@@ -4,14 +4,13 @@ use std::path::{Path, PathBuf};
 
 use hitch_campaign::{Bench, Run};
 
-use crate::arguments::model::ModelArg;
-use crate::arguments::number::{LOADS_KG, number};
-use crate::error::Error;
-use crate::import::files::columns;
-use crate::import::manifest::{Log, campaign, path_from};
-use crate::import::{Columns, Files, dialogue, load_in_name};
-use crate::output;
-use crate::text::{shell_word, wrapped};
+use hitch_output::error::Error;
+use hitch_output::text::{shell_word, wrapped};
+use hitch_results::arguments::model::ModelArg;
+use hitch_results::arguments::number::{LOADS_KG, number};
+use hitch_results::import::files::columns;
+use hitch_results::import::manifest::{Log, campaign, path_from};
+use hitch_results::import::{Columns, Files, dialogue, load_in_name};
 
 /// Arguments of `hitch import`.
 #[derive(Debug, clap::Args)]
@@ -56,8 +55,8 @@ pub struct Args {
 /// # Errors
 /// If a file cannot be read, a required column cannot be determined, or the campaign cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    output::no_stdout("--out", Some(&args.out), "a campaign is a folder")?;
-    output::check_folder(&args.out)?;
+    hitch_output::no_stdout("--out", Some(&args.out), "a campaign is a folder")?;
+    hitch_output::check_folder(&args.out)?;
     let manifest = args.out.join("campaign.toml");
     if manifest.exists() {
         let name = manifest.display();
@@ -91,9 +90,9 @@ pub fn run(args: &Args) -> Result<(), Error> {
         logs,
         model.linkage(),
     )?;
-    output::create_folder(&args.out)?;
-    output::write_file(&manifest, text.as_bytes())?;
-    output::print(&told(args, &notes, &campaign.runs))
+    hitch_output::create_folder(&args.out)?;
+    hitch_output::write_file(&manifest, text.as_bytes())?;
+    hitch_output::print(&told(args, &notes, &campaign.runs))
 }
 
 /// The test stand of a log.

@@ -9,23 +9,23 @@ use hitch_quantities::ValidCalibration;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::arguments::number::{LOADS_KG, OIL_C, number};
-use crate::closed_loop::ScenarioFigure;
-use crate::closed_loop::show::{presses_text, text};
-use crate::closed_loop::show_variants;
-use crate::closed_loop::variant::{self, BASE, Variant};
-use crate::closed_loop::{
+use crate::commands::loop_scenario::{self, LoopScenario};
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::Outputs;
+use hitch_results::arguments::number::{LOADS_KG, OIL_C, number};
+use hitch_results::closed_loop::ScenarioFigure;
+use hitch_results::closed_loop::show::{presses_text, text};
+use hitch_results::closed_loop::show_variants;
+use hitch_results::closed_loop::variant::{self, BASE, Variant};
+use hitch_results::closed_loop::{
     LoopRun, MoveResult, OIL_TEMPERATURE_C, PressResult, PressRun, PressSummary, Summary, presses,
     run_presses, run_quick_lift,
 };
-use crate::commands::loop_scenario::{self, LoopScenario};
-use crate::error::Error;
-use crate::field_loop::scenario::{self, FieldScenario};
-use crate::output::JsonArg;
-use crate::output::progress::Progress;
-use crate::output::targets::Outputs;
-use crate::report::{field_page, loop_page, variants_page};
-use crate::{closed_loop, field_loop, output};
+use hitch_results::field_loop::scenario::{self, FieldScenario};
+use hitch_results::report::{field_page, loop_page, variants_page};
+use hitch_results::{closed_loop, field_loop};
 
 /// Arguments of `hitch loop`.
 #[derive(Debug, clap::Args)]
@@ -192,7 +192,7 @@ impl Job<'_> {
         let Some((base, varied)) = runs.split_first() else {
             return Err(Error::Usage("the scenario has no moves".to_owned()));
         };
-        output::write_if(self.args.report.as_ref(), || match varied {
+        hitch_output::write_if(self.args.report.as_ref(), || match varied {
             [] => self.page(base),
             _ => variants_page::of_moves(&self.setup(), &named),
         })?;
@@ -231,7 +231,7 @@ impl Job<'_> {
         let Some((base, varied)) = runs.split_first() else {
             return Err(Error::Usage("the scenario has no presses".to_owned()));
         };
-        output::write_if(self.args.report.as_ref(), || {
+        hitch_output::write_if(self.args.report.as_ref(), || {
             variants_page::of_presses(&self.setup(), &named)
         })?;
         let document = self.document(base, varied, Figures::of_presses);
@@ -273,7 +273,7 @@ impl Job<'_> {
         let progress = Progress::start("driving in the field");
         let run = scenario::drive(scenario, &model, base, 1).map_err(Error::Usage)?;
         drop(progress);
-        output::write_if(self.args.report.as_ref(), || {
+        hitch_output::write_if(self.args.report.as_ref(), || {
             let name = loop_scenario::typed(&scenario);
             field_page::page(&name, &model, &self.source(), &run)
         })?;

@@ -5,8 +5,8 @@ use std::fmt;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
-use crate::closed_loop::Scenario;
-use crate::field_loop::scenario::FieldScenario;
+use hitch_results::closed_loop::Scenario;
+use hitch_results::field_loop::scenario::FieldScenario;
 
 /// What is driven.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

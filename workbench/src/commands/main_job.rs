@@ -7,17 +7,16 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::search::options::Options;
 use hitch_plant::Model;
 
-use crate::arguments::demonstration;
-use crate::closed_loop::Scenario;
-use crate::closed_loop::rebuild::Rebuild;
-use crate::comparison::Comparison;
-use crate::error::Error;
-use crate::explanation::Found;
-use crate::output;
-use crate::output::progress::Progress;
-use crate::output::targets::Outputs;
-use crate::report::main_page;
-use crate::text::{colour, indented, joined, wrapped};
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::Outputs;
+use hitch_output::text::{colour, indented, joined, wrapped};
+use hitch_results::arguments::demonstration;
+use hitch_results::closed_loop::Scenario;
+use hitch_results::closed_loop::rebuild::Rebuild;
+use hitch_results::comparison::Comparison;
+use hitch_results::explanation::Found;
+use hitch_results::report::main_page;
 
 /// Number of worst cells that are listed.
 const NAMED_CELLS: usize = 3;
@@ -50,7 +49,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let rebuild = Rebuild::new(&found, Scenario::Moves)?;
     drop(progress);
     outputs.say(|| format!("\n{}", rebuild.text()))?;
-    output::write_file(&args.report, main_page::page(&found, &rebuild).as_bytes())?;
+    hitch_output::write_file(&args.report, main_page::page(&found, &rebuild).as_bytes())?;
     outputs.say(|| {
         let report = args.report.display();
         format!("\nReport: {report}\nInteractive page: hitch serve\n")

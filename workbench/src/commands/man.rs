@@ -4,8 +4,7 @@ use std::io;
 
 use clap_mangen::Man;
 
-use crate::error::Error;
-use crate::output;
+use hitch_output::error::Error;
 
 /// Arguments of `hitch man`.
 #[derive(Debug, clap::Args)]
@@ -36,7 +35,7 @@ pub fn run(args: &Args, mut hitch: clap::Command) -> Result<(), Error> {
     }
     let page = page(command.clone())
         .map_err(|error| Error::Failed(format!("the page cannot be written: {error}")))?;
-    output::print(&String::from_utf8_lossy(&page))
+    hitch_output::print(&String::from_utf8_lossy(&page))
 }
 
 fn page(command: clap::Command) -> io::Result<Vec<u8>> {

@@ -4,7 +4,7 @@ pub mod new;
 
 use clap::Subcommand;
 
-use crate::error::Error;
+use hitch_output::error::Error;
 
 /// Arguments of `hitch model`.
 #[derive(Debug, clap::Args)]

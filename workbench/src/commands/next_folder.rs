@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::error::Error;
-use crate::explanation::{Next, planned_files};
-use crate::output;
+use hitch_output::error::Error;
+use hitch_results::explanation::{Next, planned_files};
 
 /// The option `--next`.
 #[derive(Debug, clap::Args)]
@@ -21,7 +20,7 @@ impl NextFolder {
     /// If it is not writable, or has files already.
     pub fn check(&self) -> Result<(), Error> {
         match &self.next {
-            Some(folder) => output::check_new_folder("--next", folder),
+            Some(folder) => hitch_output::check_new_folder("--next", folder),
             None => Ok(()),
         }
     }
@@ -45,9 +44,9 @@ impl NextFolder {
                 "No manoeuvre is proposed; {place} was not written.\n"
             ));
         };
-        output::create_folder(&folder.join("currents"))?;
+        hitch_output::create_folder(&folder.join("currents"))?;
         for (name, text) in planned_files(proposal) {
-            output::write_file(&folder.join(name), text.as_bytes())?;
+            hitch_output::write_file(&folder.join(name), text.as_bytes())?;
         }
         Ok(format!(
             "The currents of the next experiment are in {place}; save the logs there as campaign.toml states.\n"

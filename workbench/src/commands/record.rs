@@ -5,15 +5,14 @@ use std::path::{Path, PathBuf};
 
 use hitch_campaign::{Bench, Run};
 
-use crate::arguments::number::{LOADS_KG, OIL_C, number};
-use crate::error::Error;
-use crate::import::run_block::RunBlock;
-use crate::output;
-use crate::output::progress::Progress;
-use crate::text::{joined, wrapped};
-use crate::xcp_tool::{
+use hitch_ecu_host::xcp_tool::{
     BusAddress, CHANNELS, PERIOD_MS, Recording, Row, connect, record, tool_error,
 };
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::text::{joined, wrapped};
+use hitch_results::arguments::number::{LOADS_KG, OIL_C, number};
+use hitch_results::import::run_block::RunBlock;
 
 /// Arguments of `hitch record`.
 #[derive(Debug, clap::Args)]
@@ -48,8 +47,8 @@ pub struct Args {
 /// is kept.
 pub fn run(args: &Args) -> Result<(), Error> {
     let manifest = args.out.join("campaign.toml");
-    output::no_stdout("--out", Some(&args.out), "a campaign is a folder")?;
-    output::check_folder(&args.out)?;
+    hitch_output::no_stdout("--out", Some(&args.out), "a campaign is a folder")?;
+    hitch_output::check_folder(&args.out)?;
     let so_far = so_far(args, &manifest)?;
     let progress = Progress::start("recording");
     let mut session = connect(&args.can)?;
@@ -65,10 +64,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
             "{fault}; too few samples until then to keep"
         )));
     }
-    output::create_folder(&args.out)?;
+    hitch_output::create_folder(&args.out)?;
     let names = (1..).map(|number| format!("run_{number:02}.csv"));
-    let file = output::first_free(names, |name| args.out.join(name).exists());
-    output::write_file(&args.out.join(&file), log(&rows).as_bytes())?;
+    let file = hitch_output::first_free(names, |name| args.out.join(name).exists());
+    hitch_output::write_file(&args.out.join(&file), log(&rows).as_bytes())?;
     let run = RunBlock {
         file: &file,
         then: &[],
@@ -76,10 +75,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
         oil_temperature_c: Some(args.temperature),
         span_s: None,
     };
-    output::write_file(&manifest, format!("{so_far}{run}").as_bytes())?;
+    hitch_output::write_file(&manifest, format!("{so_far}{run}").as_bytes())?;
     let kept = format!("{} samples of {file} in {}", rows.len(), args.out.display());
     match lost {
-        None => output::print(&(wrapped(&kept) + "\n")),
+        None => hitch_output::print(&(wrapped(&kept) + "\n")),
         Some(fault) => Err(Error::Usage(format!(
             "{fault}; what was recorded until then is kept: {kept}"
         ))),

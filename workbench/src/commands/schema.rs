@@ -3,16 +3,16 @@
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 
-use crate::base_model::fit::ShownBaseFit;
 use crate::commands::fleet::Line;
 use crate::commands::tune_result::Tuned;
 use crate::commands::{changes, effects, loop_};
-use crate::comparison::Comparison;
-use crate::draft::DraftResult;
-use crate::error::Error;
-use crate::explanation::{Diagnosis, Explanation};
-use crate::fleet_summary::FleetSummary;
-use crate::output::{self, Document};
+use hitch_output::Document;
+use hitch_output::error::Error;
+use hitch_results::base_model::fit::ShownBaseFit;
+use hitch_results::comparison::Comparison;
+use hitch_results::draft::DraftResult;
+use hitch_results::explanation::{Diagnosis, Explanation};
+use hitch_results::fleet_summary::FleetSummary;
 
 /// Makes the schema of a document.
 type MakeSchema = fn() -> Schema;
@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     };
     let names: Vec<&str> = documents.iter().map(|(name, _)| *name).collect();
     if args.command.is_empty() {
-        return output::print(&format!("{}\n", names.join("\n")));
+        return hitch_output::print(&format!("{}\n", names.join("\n")));
     }
     let wanted = args.command.join(" ");
     let Some((_, schema)) = documents.iter().find(|(name, _)| *name == wanted) else {
@@ -81,7 +81,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     );
     let text = serde_json::to_string_pretty(&schema)
         .map_err(|error| Error::Failed(format!("the schema cannot be written: {error}")))?;
-    output::print(&format!("{text}\n"))
+    hitch_output::print(&format!("{text}\n"))
 }
 
 /// The schema of a result's document, as it is written.

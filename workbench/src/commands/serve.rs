@@ -1,12 +1,12 @@
 //! `hitch serve`: the interactive page, local only.
 use std::path::{Path, PathBuf};
 
-use crate::arguments::baseline::BaselineArg;
-use crate::arguments::model::ModelArg;
-use crate::ecu::Runner;
-use crate::error::Error;
-use crate::serve::{self, LoopSource, Source};
-use crate::xcp_tool::BusAddress;
+use hitch_ecu_host::ecu::Runner;
+use hitch_ecu_host::xcp_tool::BusAddress;
+use hitch_output::error::Error;
+use hitch_page::{LoopSource, Source};
+use hitch_results::arguments::baseline::BaselineArg;
+use hitch_results::arguments::model::ModelArg;
 
 /// Arguments of `hitch serve`.
 #[derive(Debug, clap::Args)]
@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         model: args.model.load()?,
         baseline: args.baseline.folder().map(Path::to_owned),
     };
-    serve::run(source, args.loop_source()?, args.port, !args.no_browser)
+    hitch_page::run(source, args.loop_source()?, args.port, !args.no_browser)
 }
 
 impl Args {

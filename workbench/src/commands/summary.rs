@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use crate::error::Error;
-use crate::fleet_summary::FleetSummary;
-use crate::fleet_summary::read::read;
-use crate::output::targets::Outputs;
-use crate::output::{self, JsonArg};
-use crate::report::fleet_page;
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::targets::Outputs;
+use hitch_results::fleet_summary::FleetSummary;
+use hitch_results::fleet_summary::read::read;
+use hitch_results::report::fleet_page;
 
 /// Arguments of `hitch summary`.
 #[derive(Debug, clap::Args)]
@@ -36,6 +36,6 @@ pub fn run(args: &Args) -> Result<(), Error> {
         lines.extend(read(path)?);
     }
     let summary = FleetSummary::of(lines);
-    output::write_if(args.report.as_ref(), || fleet_page::page(&summary))?;
+    hitch_output::write_if(args.report.as_ref(), || fleet_page::page(&summary))?;
     outputs.tell(&args.json, &summary, || summary.to_string())
 }

@@ -6,20 +6,20 @@ use hitch_controller_host::calibration_file;
 use hitch_plant::Model;
 use hitch_quantities::Calibration;
 
-use crate::arguments::number::{LOADS_KG, number};
-use crate::closed_loop::{self, LoopRun, Move, Press, PressRun, Scenario, run_presses};
 use crate::commands::loop_::{changed, read_files};
 use crate::commands::loop_scenario::LoopScenario;
 use crate::commands::tune_field;
 use crate::commands::tune_result::{Found, Search, Tuned};
 use crate::commands::tune_scenario::{self, tunable};
-use crate::error::Error;
-use crate::output::progress::Progress;
-use crate::output::targets::Outputs;
-use crate::output::{self, JsonArg};
-use crate::report::tuning_page;
-use crate::tuning::{Judged, Trial};
 use hitch_closed_loop::calibrate::calibrate;
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::Outputs;
+use hitch_results::arguments::number::{LOADS_KG, number};
+use hitch_results::closed_loop::{self, LoopRun, Move, Press, PressRun, Scenario, run_presses};
+use hitch_results::report::tuning_page;
+use hitch_results::tuning::{Judged, Trial};
 
 /// Arguments of `hitch tune`.
 #[derive(Debug, clap::Args)]
@@ -111,9 +111,9 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let is_worse = found.tuned.is_worse();
     if !is_worse || args.force {
         let text = calibration_file::write_tuned(&found.calibration, &base);
-        output::write_file(&args.out, text.as_bytes())?;
+        hitch_output::write_file(&args.out, text.as_bytes())?;
     }
-    output::write_if(args.report.as_ref(), || found.page)?;
+    hitch_output::write_if(args.report.as_ref(), || found.page)?;
     outputs.tell(&args.json, &found.tuned, || found.tuned.to_string())?;
     if is_worse && !args.force {
         Err(worse(args, &found.tuned))

@@ -4,11 +4,11 @@ use hitch_closed_loop::driven::MachineError;
 use hitch_closed_loop::with_dynamics;
 
 use super::tune_result::{Found, Search, Tuned};
-use crate::error::Error;
-use crate::field_loop::scenario::FieldScenario;
-use crate::output::progress::Progress;
-use crate::report::tuning_page;
-use crate::tuning::FieldTrial;
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_results::field_loop::scenario::FieldScenario;
+use hitch_results::report::tuning_page;
+use hitch_results::tuning::FieldTrial;
 
 /// Tunes a function for its scenario. Figures and costs are those on soils that the search has not seen.
 ///

@@ -8,11 +8,11 @@ use hitch_quantities::ValidCalibration;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::error::Error;
-use crate::output::progress::Progress;
-use crate::text::Table;
-use crate::tuning::Change;
-use crate::tuning::figures::{self, Figure, Figures};
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::text::Table;
+use hitch_results::tuning::Change;
+use hitch_results::tuning::figures::{self, Figure, Figures};
 
 /// Result of `hitch tune`.
 #[derive(Debug, Serialize, JsonSchema)]

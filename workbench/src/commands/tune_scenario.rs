@@ -5,9 +5,9 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use hitch_plant::Model;
 use hitch_quantities::ValidCalibration;
 
-use crate::closed_loop::{self, Move, OIL_TEMPERATURE_C, Press, Scenario};
 use crate::commands::loop_scenario::LoopScenario;
-use crate::field_loop::scenario::FieldScenario;
+use hitch_results::closed_loop::{self, Move, OIL_TEMPERATURE_C, Press, Scenario};
+use hitch_results::field_loop::scenario::FieldScenario;
 
 /// Parses a scenario that has values to tune.
 pub fn tunable() -> impl TypedValueParser<Value = LoopScenario> {

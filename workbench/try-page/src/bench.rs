@@ -1,6 +1,6 @@
 //! The requests of the closed loop, and their answers.
 //!
-//! Paths, fields and answers are those of `hitch serve` (`workbench/src/serve/live/routes.rs`).
+//! Paths, fields and answers are those of `hitch serve` (`workbench/page/src/live/routes.rs`).
 
 use std::path::Path;
 use std::sync::LazyLock;

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use hitch_workbench::{serve, web};
+use hitch_results::web;
 
 /// The page around the closed loop.
 const PAGE: &str = include_str!("../../../workbench/try-page/assets/page.html");
@@ -72,7 +72,8 @@ fn filled(page: &str, parts: &[(&str, String)]) -> Result<String> {
 
 /// The text of a file of `hitch serve`.
 fn served(name: &str) -> Result<&'static str> {
-    serve::page_text(name).with_context(|| format!("the page of hitch serve has no file {name:?}"))
+    hitch_page::page_text(name)
+        .with_context(|| format!("the page of hitch serve has no file {name:?}"))
 }
 
 /// The contents of the section of the closed loop.

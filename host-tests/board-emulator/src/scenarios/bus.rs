@@ -50,7 +50,7 @@ pub fn flooded(setup: &Setup) -> Result<String> {
         rig.pick_up()?;
         rig.bench
             .operator
-            .apply(hitch_workbench::ecu::Order::Lever(110.0));
+            .apply(hitch_ecu_host::ecu::Order::Lever(110.0));
         for step in 0..2_000_u32 {
             let heard = if floods { frames(step) } else { Vec::new() };
             rig.bench

@@ -2,8 +2,8 @@
 
 use anyhow::{Result, ensure};
 use hitch_ecu::{AdcCode, BoardScaling, Contact, Contacts};
+use hitch_ecu_host::ecu::Order;
 use hitch_protocols::j1939::Trouble;
-use hitch_workbench::ecu::Order;
 
 use super::first_flash::{reported, reports};
 use super::rig::{READY_MS, Rig};

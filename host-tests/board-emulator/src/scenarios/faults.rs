@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use hitch_ecu::{AdcCode, Samples};
-use hitch_workbench::ecu::Order;
+use hitch_ecu_host::ecu::Order;
 
 use super::rig::Rig;
 use super::setup::Setup;

@@ -2,10 +2,10 @@
 
 use anyhow::{Context, Result, ensure};
 use hitch_ecu::{AdcCode, Contacts};
+use hitch_ecu_host::ecu::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES};
 use hitch_protocols::j1939::{Id, Pgn, Trouble};
 use hitch_protocols::storage::fault_history::MOST_WRITES;
 use hitch_protocols::storage::fault_log::{Entry, FaultLog, MOST_SLOTS};
-use hitch_workbench::ecu::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES};
 
 use super::rig::Rig;
 use super::setup::Setup;

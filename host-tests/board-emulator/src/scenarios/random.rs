@@ -3,7 +3,7 @@
 
 use anyhow::{Result, ensure};
 use hitch_ecu::Contact;
-use hitch_workbench::ecu::Order;
+use hitch_ecu_host::ecu::Order;
 
 use super::faults::{FAULTS, Fault};
 use super::rig::{READY_MS, Rig};

@@ -2,10 +2,10 @@
 
 use anyhow::{Context as _, Result, ensure};
 use hitch_ecu::Contact;
+use hitch_ecu_host::ecu::Order;
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::hitch::StatusMessage;
 use hitch_protocols::j1939::{ExitCode, GLOBAL, HitchCommand, Id, Name, NameFields, Pgn};
-use hitch_workbench::ecu::Order;
 
 use super::rig::Rig;
 use super::setup::Setup;

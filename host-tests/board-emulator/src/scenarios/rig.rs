@@ -2,8 +2,8 @@
 
 use anyhow::{Result, ensure};
 use hitch_ecu::Contacts;
+use hitch_ecu_host::ecu::{Bench, Moment, Order};
 use hitch_protocols::can::Frame;
-use hitch_workbench::ecu::{Bench, Moment, Order};
 
 use super::setup::Setup;
 use crate::audit::findings;

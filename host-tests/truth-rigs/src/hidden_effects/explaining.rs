@@ -6,7 +6,7 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Verdict, explain};
 use hitch_plant::{Effect, Model};
-use hitch_workbench::explanation::Since;
+use hitch_results::explanation::Since;
 
 use super::answer::Answer;
 

@@ -6,8 +6,8 @@ use std::time::Duration;
 use hitch_quantities::{Fault, State};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::ecu::{Moment, PaceChange};
-use crate::text::width;
+use hitch_ecu_host::ecu::{Moment, PaceChange};
+use hitch_output::text::width;
 
 /// Interval between updates of the line, ms.
 const LIVE_MS: u64 = 100;

@@ -6,7 +6,7 @@ use hitch_effects::expression::operation::FUNCTIONS;
 use hitch_plant::Place;
 use hitch_plant::hooks::signals::SIGNALS;
 
-use crate::text::Table;
+use hitch_output::text::Table;
 
 const HEAD: &str = "\
 A term of your own in a model file is fitted, added and reported like an effect

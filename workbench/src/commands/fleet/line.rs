@@ -8,8 +8,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::error::Error;
-use crate::output::Document;
+use hitch_output::Document;
+use hitch_output::error::Error;
 
 /// A line of `--jsonl`.
 #[derive(JsonSchema)]

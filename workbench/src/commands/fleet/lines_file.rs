@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use super::line;
-use crate::error::Error;
-use crate::output::{self, is_stdout};
+use hitch_output::error::Error;
+use hitch_output::is_stdout;
 
 /// An open file of lines, or standard output.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl LinesFile {
     /// If it has lines that are not to be continued, is not a file of lines, or cannot be read or written.
     pub fn open(path: &Path, resume: bool) -> Result<(Self, HashMap<String, bool>), Error> {
         if is_stdout(path) {
-            output::no_stdout(
+            hitch_output::no_stdout(
                 "--resume with --jsonl",
                 resume.then_some(path),
                 "standard output has no earlier lines",
@@ -76,7 +76,7 @@ impl LinesFile {
     /// If it cannot be written.
     pub fn write(&self, line: &str) -> Result<(), Error> {
         let Some(file) = &self.file else {
-            return output::print(line);
+            return hitch_output::print(line);
         };
         let mut file = file.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         file.write_all(line.as_bytes())

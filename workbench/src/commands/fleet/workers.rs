@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::error::Error;
+use hitch_output::error::Error;
 
 /// Calls `one` for each item, `jobs` of them at a time (one for each core without a number). The cores are shared out:
 /// rayon uses `cores / jobs` threads, at least one, in each job. `RAYON_NUM_THREADS` limits the cores.

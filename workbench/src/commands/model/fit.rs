@@ -6,14 +6,14 @@ use hitch_campaign::Campaign;
 use hitch_identification::base::fit_base_model;
 use hitch_identification::data::experiment::Experiment;
 
-use crate::arguments::model::ModelArg;
-use crate::arguments::tolerances::ToleranceArgs;
-use crate::base_model::fit::ShownBaseFit;
-use crate::error::Error;
-use crate::output::progress::Progress;
-use crate::output::targets::{Outputs, campaign_files};
-use crate::output::{self, JsonArg};
-use crate::report::fit_page;
+use hitch_output::JsonArg;
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::{Outputs, campaign_files};
+use hitch_results::arguments::model::ModelArg;
+use hitch_results::arguments::tolerances::ToleranceArgs;
+use hitch_results::base_model::fit::ShownBaseFit;
+use hitch_results::report::fit_page;
 
 /// Arguments of `hitch model fit`.
 #[derive(Debug, clap::Args)]
@@ -59,15 +59,15 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let experiment = Experiment::new(&campaign, &model);
     let mut fit = fit_base_model(&experiment, &model, &tolerances, &|what| progress.say(what));
     drop(progress);
-    fit.model.name = output::stem(&args.out);
-    output::write_file(&args.out, hitch_model_file::to_toml(&fit.model).as_bytes())?;
+    fit.model.name = hitch_output::stem(&args.out);
+    hitch_output::write_file(&args.out, hitch_model_file::to_toml(&fit.model).as_bytes())?;
     let next = format!(
         "hitch explain {} --model {}",
         args.campaign.display(),
         args.out.display()
     );
     let shown = ShownBaseFit::new(&experiment, &model, &fit, next);
-    output::write_if(args.report.as_ref(), || {
+    hitch_output::write_if(args.report.as_ref(), || {
         fit_page::page(&fit_page::Shown {
             experiment: &experiment,
             declared: &model,

@@ -8,12 +8,11 @@ use hitch_input::source_file::SourceFile;
 use hitch_model_file::Template;
 use hitch_plant::{Valve, ValveCurve};
 
-use crate::base_model::data_sheet::{self, ENDS, QUESTIONS, VALVES};
-use crate::base_model::{flow_curve, linkage_table};
-use crate::error::Error;
-use crate::output;
-use crate::output::targets::Outputs;
-use crate::text::shell_word;
+use hitch_output::error::Error;
+use hitch_output::targets::Outputs;
+use hitch_output::text::shell_word;
+use hitch_results::base_model::data_sheet::{self, ENDS, QUESTIONS, VALVES};
+use hitch_results::base_model::{flow_curve, linkage_table};
 
 /// Arguments of `hitch model new`.
 #[derive(Debug, clap::Args)]
@@ -65,7 +64,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let name = args
         .out
         .as_deref()
-        .map_or_else(|| "my-hitch".to_owned(), output::stem);
+        .map_or_else(|| "my-hitch".to_owned(), hitch_output::stem);
     let mut template = Template::of(&name, &hitch_model_file::named(&args.from)?);
     if let Some(kind) = &args.pump {
         template.set("pump.kind", kind).map_err(Error::Usage)?;
@@ -92,10 +91,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let text = template.text()?;
     match &args.out {
         Some(path) => {
-            output::write_file(path, text.as_bytes())?;
+            hitch_output::write_file(path, text.as_bytes())?;
             outputs.say(|| told(path))
         }
-        None => output::print(&text),
+        None => hitch_output::print(&text),
     }
 }
 

@@ -7,9 +7,8 @@ use hitch_campaign::{Campaign, Run};
 use hitch_model_file::quoted;
 use hitch_plant::Channel;
 
-use crate::error::Error;
-use crate::import::run_block::RunBlock;
-use crate::output;
+use hitch_output::error::Error;
+use hitch_results::import::run_block::RunBlock;
 
 /// A new campaign, with the runs so far.
 pub struct Folder {
@@ -26,7 +25,7 @@ impl Folder {
     /// # Errors
     /// If it is not writable, or has files already.
     pub fn new(path: &Path) -> Result<Self, Error> {
-        output::check_new_folder("--out", path)?;
+        hitch_output::check_new_folder("--out", path)?;
         Ok(Self {
             path: path.to_path_buf(),
             names: HashSet::new(),
@@ -40,8 +39,8 @@ impl Folder {
     /// If it cannot be written.
     pub fn add(&mut self, run: &Run, log: &str) -> Result<(), Error> {
         let name = name_of_log(&run.file, &mut self.names);
-        output::create_folder(&self.path)?;
-        output::write_file(&self.path.join(&name), log.as_bytes())?;
+        hitch_output::create_folder(&self.path)?;
+        hitch_output::write_file(&self.path.join(&name), log.as_bytes())?;
         let block = RunBlock {
             file: &name,
             then: &[],
@@ -63,7 +62,7 @@ impl Folder {
         let head = format!("format = 1\nname = {name}\ndescription = \"Simulated\"\n");
         let noise = simulated.map_or(String::new(), noise);
         let text = head + &noise + &self.runs;
-        output::write_file(&self.path.join("campaign.toml"), text.as_bytes())
+        hitch_output::write_file(&self.path.join("campaign.toml"), text.as_bytes())
     }
 }
 
@@ -92,7 +91,7 @@ fn name_of_log(label: &str, taken: &mut HashSet<String>) -> String {
     let stem = stem(&file);
     let names = (2..).map(|number| format!("{stem}_{number}.csv"));
     let names = std::iter::once(format!("{stem}.csv")).chain(names);
-    output::first_free(names, |name| !taken.insert(name.to_owned()))
+    hitch_output::first_free(names, |name| !taken.insert(name.to_owned()))
 }
 
 /// The name of a run without the extension of its file and the time span behind it.

@@ -7,11 +7,10 @@ use std::path::{Path, PathBuf};
 use hitch_campaign::{Bench, Campaign, Run};
 use hitch_plant::{Channel, Model};
 
-use crate::arguments::model::ModelArg;
-use crate::error::Error;
-use crate::output;
-use crate::output::progress::Progress;
-use crate::output::targets::Outputs;
+use hitch_output::error::Error;
+use hitch_output::progress::Progress;
+use hitch_output::targets::Outputs;
+use hitch_results::arguments::model::ModelArg;
 
 use folder::Folder;
 use trace::simulated;
@@ -77,7 +76,7 @@ impl Args {
         let rig = log.bench.rig(self.start_angle_rad(&model, &log)?);
         let text = simulated(&model, rig, &log);
         drop(progress);
-        output::write_file(&self.out, text.as_bytes())
+        hitch_output::write_file(&self.out, text.as_bytes())
     }
 
     /// Simulates several logs under the same conditions to a folder.
