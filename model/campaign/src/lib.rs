@@ -15,6 +15,7 @@
 #![forbid(unsafe_code)]
 
 mod bus_log;
+mod cell_error;
 mod channel_log;
 mod columns;
 mod contents;
@@ -22,9 +23,11 @@ mod csv_log;
 mod cut;
 mod dropout;
 pub mod folder;
+mod ideal_times;
 mod manifest;
 mod mdf_log;
 mod number_log;
+mod own_rate;
 mod recorded;
 mod run_columns;
 mod run_log;

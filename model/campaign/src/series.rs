@@ -47,6 +47,17 @@ impl Series {
         }
     }
 
+    /// The samples of these rows.
+    pub fn rows(&self, rows: impl IntoIterator<Item = usize>) -> Self {
+        let mut samples = Self::default();
+        for row in rows {
+            samples.times_s.push(self.times_s[row]);
+            samples.values.push(self.values[row]);
+            samples.bytes.push(self.bytes[row]);
+        }
+        samples
+    }
+
     /// Adds a sample; duplicates are merged.
     pub fn push(&mut self, time_s: f64, value: f64, byte: usize) {
         if self.times_s.last() == Some(&time_s) && self.values.last() == Some(&value) {

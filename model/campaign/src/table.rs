@@ -6,9 +6,11 @@ use std::sync::Arc;
 use hitch_input::input_error::{InputError, Position};
 use hitch_input::source_file::SourceFile;
 
+use crate::cell_error::cell_error;
 use crate::cut::Cut;
 use crate::dropout;
 use crate::dropout::SHORT_GAP_S as LONGEST_GAP_S;
+use crate::own_rate::{OwnRate, own_rate};
 use crate::recorded::{CampaignError, Run};
 use crate::run_columns::{LIFT, LOWER, TIME};
 use crate::series::{Series, median_step_s, rises, values};
@@ -52,6 +54,8 @@ pub struct Table {
     set_back: Vec<SetBack>,
     /// How much is kept of a recording that is cut off.
     cut_off: Option<String>,
+    /// The channels with a lower rate than their rows, one line each.
+    rates: Vec<String>,
 }
 
 /// What a reader of a log should know, and its numbers do not tell.
@@ -61,6 +65,8 @@ pub struct LogNotes {
     pub steps: Vec<ClockStep>,
     /// How much is kept of a recording that is cut off.
     pub cut_off: Option<String>,
+    /// The channels with a lower rate than their rows, one line each.
+    pub rates: Vec<String>,
 }
 
 /// A row that is not later than the one before it.
@@ -108,12 +114,14 @@ impl Table {
                 origin_s: 0.0,
                 set_back: Vec::new(),
                 cut_off: None,
+                rates: Vec::new(),
             }),
         }
     }
 
     /// The table whose rows are the samples of the lift current. Samples of other series are moved to the times of the
-    /// rows if one is within half a row; `time` and the series are given with their cells, if rows have cells.
+    /// rows if one is within half a row; `time` and the series are given with their cells, if rows have cells. A series with a
+    /// lower rate than its times counts as its own samples ([`own_rate`]).
     ///
     /// # Errors
     /// There are too few rows for a run.
@@ -125,20 +133,36 @@ impl Table {
     ) -> Result<Self, CampaignError> {
         let set_back = set_back(&rows.times_s);
         let pauses: Vec<f64> = set_back.iter().map(SetBack::pause_s).collect();
-        let times_s = &continued(&rows.times_s, &pauses);
-        let within_s = median_step_s(times_s) / 2.0;
-        let samples = |name, cell, values| Samples { name, cell, values };
-        let moved = |(name, cell, series): (_, _, &Series)| {
+        let mut rates = Vec::new();
+        let sampled = series.map(|(name, cell, series)| {
             let series = Series {
                 times_s: continued(&series.times_s, &pauses),
                 ..series.clone()
             };
-            samples(name, cell, values(name, &series, times_s, within_s))
+            let own = own_rate(&series).filter(|own| is_usable(name, own, &set_back));
+            rates.extend(own.as_ref().map(|own| own.note(name)));
+            (name, cell, own.map_or(series, |own| own.samples))
+        });
+        let sampled: Vec<(&'static str, usize, Series)> = sampled.collect();
+        let rows = Series {
+            times_s: continued(&rows.times_s, &pauses),
+            ..rows.clone()
         };
+        let rows = &rows_of_lift(rows, &sampled);
+        let times_s = &rows.times_s;
+        let within_s = median_step_s(times_s) / 2.0;
+        let samples = |name, cell, values| Samples { name, cell, values };
+        let moved = sampled.iter().map(|(name, cell, series)| {
+            samples(name, *cell, values(name, series, times_s, within_s))
+        });
         let columns = std::iter::once(samples(TIME, time, times_s.clone()));
-        let columns = columns.chain(series.map(moved)).collect();
+        let columns = columns.chain(moved).collect();
         let table = Self::new(Arc::clone(source), columns, rows.bytes.clone(), cells)?;
-        Ok(Self { set_back, ..table })
+        Ok(Self {
+            set_back,
+            rates,
+            ..table
+        })
     }
 
     /// The same table, whose time 0 is that of the logger's clock, s.
@@ -193,6 +217,9 @@ impl Table {
         let later = next.set_back.iter().map(|one| one.after(rows));
         self.set_back.extend(later);
         self.cut_off = self.cut_off.or_else(|| next.cut_off.clone());
+        let others = next.rates.iter().filter(|rate| !self.rates.contains(rate));
+        let others: Vec<String> = others.cloned().collect();
+        self.rates.extend(others);
         for (own, samples) in self.columns.iter_mut().zip(&next.columns) {
             let later = if own.name == TIME { later_s } else { 0.0 };
             own.values
@@ -252,6 +279,7 @@ impl Table {
                 })
                 .collect(),
             cut_off: self.cut_off.clone(),
+            rates: self.rates.clone(),
         })
     }
 
@@ -326,6 +354,7 @@ impl Table {
         LogNotes {
             steps: self.clock_steps(),
             cut_off: self.cut_off.clone(),
+            rates: self.rates.clone(),
         }
     }
 
@@ -429,46 +458,26 @@ fn continued(times_s: &[f64], pauses_s: &[f64]) -> Vec<f64> {
     moved.collect()
 }
 
+/// Whether the samples of a channel with its own rate replace its rows. Between those of a current, which is interpolated, a
+/// step is at an unknown time, so they have to be as close as the sides of a gap; else the current is used as it is.
+fn is_usable(name: &str, own: &OwnRate, set_back: &[SetBack]) -> bool {
+    let is_current = [LIFT, LOWER].contains(&name);
+    !is_current || (own.longest_step_s <= LONGEST_GAP_S && set_back.is_empty())
+}
+
+/// The rows of a table: the samples of the lift current, also if it has a lower rate than the rows of the log.
+fn rows_of_lift(rows: Series, sampled: &[(&'static str, usize, Series)]) -> Series {
+    let lift = sampled.iter().find(|(name, ..)| *name == LIFT);
+    let last_s = rows.times_s.last().copied();
+    match lift.zip(last_s) {
+        Some(((_, _, lift), last_s)) if lift.times_s.len() < rows.times_s.len() => {
+            lift.until(last_s)
+        }
+        _ => rows,
+    }
+}
+
 fn kept_of<T: Copy>(values: &[T], stays: &[bool]) -> Vec<T> {
     let kept = values.iter().zip(stays).filter(|(_, stays)| **stays);
     kept.map(|(value, _)| *value).collect()
-}
-
-/// A fault of a cell of a row with separators.
-pub fn cell_error(
-    source: &SourceFile,
-    row_byte: usize,
-    (index, mark): (usize, char),
-    what: String,
-    hint: impl Into<String>,
-) -> InputError {
-    let Position { line, column } = source.place(row_byte);
-    let row = source.text.get(row_byte..).unwrap_or_default();
-    let before = cells_before(row, index, mark);
-    let column = column + before;
-    InputError::at(&source.path, Position { line, column }, what, hint)
-}
-
-/// Number of characters of a row before its cell `index`.
-fn cells_before(row: &str, index: usize, mark: char) -> usize {
-    let (mut quoted, mut marks) = (false, 0);
-    if mark == ' ' {
-        // Several spaces are one separator.
-        let cell = row.split_whitespace().nth(index).unwrap_or_default();
-        let byte = (cell.as_ptr() as usize).checked_sub(row.as_ptr() as usize);
-        let before = byte.and_then(|byte| row.get(..byte)).unwrap_or_default();
-        return before.chars().count();
-    }
-    for (characters, c) in row.chars().enumerate() {
-        if marks == index {
-            return characters;
-        }
-        match c {
-            '"' => quoted = !quoted,
-            c if c == mark && !quoted => marks += 1,
-            '\n' | '\r' if !quoted => return characters,
-            _ => {}
-        }
-    }
-    row.chars().count()
 }

@@ -11,9 +11,9 @@ use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
 use crate::bus_log::frame::{Frame, FrameSink, Id, MOST_BYTES};
+use crate::cell_error::cell_error;
 use crate::csv_log::text_rows::{MARKS, rows};
 use crate::recorded::CampaignError;
-use crate::table::cell_error;
 
 /// The cells of a frame in a row.
 struct Frames {

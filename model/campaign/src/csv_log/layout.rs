@@ -4,6 +4,7 @@ use csv::StringRecord;
 use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
+use crate::cell_error::cell_error;
 use crate::csv_log::clock::{DateOrder, Times, is_clock, is_date};
 use crate::csv_log::decimals::{Decimals, is_missing};
 use crate::csv_log::dialect::is_sample;
@@ -11,7 +12,6 @@ use crate::csv_log::lvm::{self, Steps};
 use crate::csv_log::text_rows::{Header, rows};
 use crate::recorded::CampaignError;
 use crate::series::rises;
-use crate::table::cell_error;
 use crate::time_base::{Seen, bases, is_time_name, notes};
 
 /// Number of rows that are examined.

@@ -16,10 +16,11 @@ use hitch_plant::Linkage;
 use layout::Layout;
 use text_rows::Header;
 
+use crate::cell_error::cell_error;
 use crate::columns::{ColumnSettings, offer_columns};
 use crate::contents::{LogColumn, Survey};
 use crate::recorded::CampaignError;
-use crate::table::{Table, cell_error};
+use crate::table::Table;
 
 /// Reads a table for a hitch with this linkage; `settings` map its columns unless it has the project's own header.
 ///

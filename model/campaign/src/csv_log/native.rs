@@ -8,13 +8,14 @@ use hitch_input::naming::{offer_names, unknown_name};
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 
+use crate::cell_error::cell_error;
 use crate::columns::ColumnSettings;
 use crate::csv_log::layout::Layout;
 use crate::csv_log::mapped;
 use crate::csv_log::text_rows::{Header, MARKS, rows};
 use crate::recorded::CampaignError;
 use crate::run_columns::{COLUMNS, Column, column};
-use crate::table::{Table, cell_error};
+use crate::table::Table;
 
 /// Reads the table. The format is defined: nothing is assumed about its shape, its units or its numbers.
 ///

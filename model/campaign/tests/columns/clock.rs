@@ -59,7 +59,7 @@ fn a_step_of_the_clock_is_said_with_its_row() {
                 // The library that writes the file sorts its times.
                 continue;
             }
-            let LogNotes { steps, cut_off } = notes(file, &bytes);
+            let LogNotes { steps, cut_off, .. } = notes(file, &bytes);
             assert_eq!((steps.len(), cut_off), (1, None), "{file} {step_s}");
             assert_eq!(steps[0].sample, STEP);
             assert_eq!(steps[0].said, format!("{place}: {expected}"));

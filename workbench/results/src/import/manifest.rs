@@ -44,7 +44,8 @@ pub fn campaign(
     for ((mut log, run), logged) in logs.into_iter().zip(&whole.runs).zip(&logged) {
         let found = cuts(run, &logged.steps);
         let said = |note: &String| format!("{}: {note}", run.file);
-        notes.extend(logged.cut_off.iter().chain(&found.notes).map(said));
+        let whole = logged.cut_off.iter().chain(&logged.rates);
+        notes.extend(whole.chain(&found.notes).map(said));
         log.cuts = found.runs;
         useful.extend((!found.is_useless).then_some(log));
     }
