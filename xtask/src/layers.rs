@@ -19,7 +19,7 @@ struct Layers {
 }
 
 /// The checked crates; add an entry for a new one.
-const CRATES: [Layers; 12] = [
+const CRATES: [Layers; 13] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -93,6 +93,32 @@ const CRATES: [Layers; 12] = [
             &["next_run"],
             &["fit"],
             &["simulated"],
+        ],
+    },
+    Layers {
+        sources: "model/measurement/src",
+        order: &[
+            &["statistics"],
+            &["finding"],
+            &["logs"],
+            &["lifting"],
+            &["rest_pressure"],
+            &[
+                "dead_pressure",
+                "load",
+                "pressure_unit",
+                "pump_below_cylinder",
+            ],
+            &[
+                "current_zero",
+                "delay",
+                "direction",
+                "equal_samples",
+                "logger",
+                "no_motion",
+                "repeated_run",
+                "spikes",
+            ],
         ],
     },
     Layers {
