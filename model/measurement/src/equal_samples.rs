@@ -6,11 +6,13 @@ use hitch_plant::Channel;
 
 use crate::finding::{Evidence, Finding, Kind};
 use crate::logs::{Logs, Open, extremes};
-use crate::statistics::{longest_by_chance, stretches};
+use crate::statistics::{longest_by_chance, noise, stretches};
 
 /// Largest share of equal neighbours of a channel that shows its noise: above it, the resolution hides the noise, and equal samples say
 /// nothing.
 const MOST_EQUAL: f64 = 0.5;
+/// Largest step in sigma at which no value in a step is constant.
+const FINE: f64 = 0.6;
 /// Fewest pairs of samples from which that share is known, within 5 %.
 const FEWEST_PAIRS: usize = 100;
 
@@ -55,33 +57,32 @@ fn of_channel(logs: &Logs, channel: Channel) -> Vec<Finding> {
 
 /// As many equal samples in succession as chance does not give; `None` if the noise of the channel cannot be seen.
 fn fewest_equal(logs: &Logs, channel: Channel) -> Option<usize> {
-    let (mut pairs, mut equal, mut samples) = (0, 0, 0);
+    let mut varied: Vec<Vec<f64>> = Vec::new();
+    let mut samples = 0;
     for (at, run) in logs.runs().iter().enumerate() {
         let Some(values) = run.channel(channel) else {
             continue;
         };
         samples += values.len();
-        let known: Vec<Vec<f64>> = steady(logs, at, channel)
-            .into_iter()
-            .map(|stretch| {
-                values[stretch]
-                    .iter()
-                    .copied()
-                    .filter(|v| v.is_finite())
-                    .collect()
-            })
-            .collect();
-        let all = known.iter().flat_map(|stretch| stretch.windows(2));
-        let varied = |pair: &&[f64]| pair[0] != pair[1];
-        let (count, different) = (all.clone().count(), all.filter(varied).count());
-        // A stretch whose samples are nearly all equal is what is looked for: it does not show the noise.
-        if different * 4 > count {
-            pairs += count;
-            equal += count - different;
+        for stretch in steady(logs, at, channel) {
+            let known = values[stretch].iter().copied().filter(|v| v.is_finite());
+            varied.push(known.collect());
         }
     }
+    // A stretch whose samples are nearly all equal is what is looked for: it does not show the noise.
+    varied.retain(|stretch| 4 * (stretch.len() - equal_pairs(stretch)) > stretch.len() + 4);
+    let pairs: usize = varied.iter().map(|stretch| stretch.len() - 1).sum();
+    let equal: usize = varied.iter().map(|stretch| equal_pairs(stretch)).sum();
     let share = equal as f64 / pairs.max(1) as f64;
-    (pairs >= FEWEST_PAIRS && share < MOST_EQUAL).then(|| longest_by_chance(share, samples))
+    // Steps above the noise hide it in the middle of a step; values that alternate between two have 1.2 steps of noise at most.
+    let fine = logs.step[channel.index()] < FINE * noise(varied.iter().map(Vec::as_slice));
+    let shown = fine && pairs >= FEWEST_PAIRS && share < MOST_EQUAL;
+    shown.then(|| longest_by_chance(share, samples))
+}
+
+/// Pairs of equal neighbours.
+fn equal_pairs(values: &[f64]) -> usize {
+    values.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }
 
 /// Stretches in which a sensor without noise would show one value: the angle at rest, the others at constant currents.
