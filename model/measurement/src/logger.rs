@@ -10,6 +10,8 @@ use crate::statistics::{median, noise, quantile};
 const LONGEST_S: f64 = 0.05;
 /// Ripple, in sigma of the logged current, that is not its noise: laboratories state it within a factor of two.
 const RIPPLE: f64 = 4.0;
+/// Fewest steps in the range of a channel that moves.
+const FEWEST_STEPS: f64 = 20.0;
 /// Change of the oil temperature, degrees, that changes the viscosity by about a fifth.
 const WARMING_C: f64 = 5.0;
 
@@ -36,7 +38,7 @@ pub(crate) fn interval(logs: &Logs) -> Vec<Finding> {
 }
 
 /// Channels whose steps are larger than their noise. Rounding to a step has the noise of the step by the root of twelve; without a
-/// stated noise, the steps are those of a converter with less than eight bits.
+/// stated noise, the steps hide the noise and are those of a converter with less than eight bits.
 pub(crate) fn resolution(logs: &Logs) -> Vec<Finding> {
     let coarse = |channel: Channel| {
         let step = logs.step[channel.index()];
@@ -45,12 +47,12 @@ pub(crate) fn resolution(logs: &Logs) -> Vec<Finding> {
         let (limit, than) = match logs.campaign.noise.of(channel) {
             Some(sigma) => (sigma * 12f64.sqrt(), format!("its stated noise is {sigma}")),
             None => (
-                (high - low) / 256.0,
+                ((high - low) / 256.0).max(logs.noise_of(channel)),
                 format!("its range is {:.0}", high - low),
             ),
         };
-        // Of a channel that is constant, no step is known.
-        if !(step > limit && high - low > 2.0 * step) {
+        // Of a channel that hardly moves, no range is known.
+        if step <= limit || high - low < FEWEST_STEPS * step {
             return None;
         }
         let (title, unit) = (channel.title(), channel.unit());

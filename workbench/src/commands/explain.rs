@@ -1,5 +1,6 @@
 //! `hitch explain`: finds and adds missing effects until no further one is significant.
 
+use hitch_measurement::check;
 use std::path::{Path, PathBuf};
 
 use crate::arguments::baseline::BaselineArg;
@@ -14,6 +15,7 @@ use crate::output::progress::Progress;
 use crate::output::targets::{Outputs, campaign_files};
 use crate::output::{self, JsonArg};
 use crate::report::explanation_page;
+use crate::text::measurement;
 
 /// Arguments of `hitch explain`.
 #[derive(Debug, clap::Args)]
@@ -90,8 +92,11 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     args.next.check()?;
     let options = args.search.options();
     let Posed {
-        model, experiment, ..
+        model,
+        campaign,
+        experiment,
     } = Base::load(&args.model, &args.baseline)?.posed(folder)?;
+    let faults = measurement::text(&check(&campaign, Some(&model)));
     let improved = saving(&model, args.out.as_deref());
     let found = Found::new(experiment, model, options, &improved);
     found.write_model(args.out.as_ref())?;
@@ -100,6 +105,6 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     outputs.tell(&args.json, &found.shown, || {
         let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
         let next = next_command::after_explanation(out, folder, &args.model, &args.baseline);
-        format!("{}\n{written}{next}", found.shown)
+        format!("{faults}{}\n{written}{next}", found.shown)
     })
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use hitch_campaign::{Bench, Run};
+use hitch_measurement::check;
 
 use crate::arguments::model::ModelArg;
 use crate::arguments::number::{LOADS_KG, number};
@@ -11,7 +12,7 @@ use crate::import::files::columns;
 use crate::import::manifest::{Log, campaign, path_from};
 use crate::import::{Columns, Files, dialogue, load_in_name};
 use crate::output;
-use crate::text::{shell_word, wrapped};
+use crate::text::{measurement, shell_word, wrapped};
 
 /// Arguments of `hitch import`.
 #[derive(Debug, clap::Args)]
@@ -93,7 +94,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     )?;
     output::create_folder(&args.out)?;
     output::write_file(&manifest, text.as_bytes())?;
-    output::print(&told(args, &notes, &campaign.runs))
+    let faults = measurement::text(&check(&campaign, Some(&model)));
+    output::print(&(faults + &told(args, &notes, &campaign.runs)))
 }
 
 /// The test stand of a log.

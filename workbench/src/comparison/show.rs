@@ -6,7 +6,7 @@ use hitch_plant::Channel;
 
 use super::{Cell, ChannelError, Comparison, Grouping};
 use crate::text::colour::{by_sigma, sigma};
-use crate::text::{Table, indented, wrapped};
+use crate::text::{Table, indented, measurement, wrapped};
 use crate::web::heat_table::{HeatTable, Shade};
 
 /// Number of worst cells that are listed.
@@ -20,6 +20,7 @@ impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let head = format!("Campaign {}, model {}", self.campaign, self.model);
         writeln!(f, "{}", wrapped(&head))?;
+        write!(f, "{}", measurement::text(&self.measurement))?;
         writeln!(
             f,
             "  error {} sigma (noise of the instruments: {:.2})\n",

@@ -2,6 +2,7 @@
 use std::path::Path;
 
 pub mod colour;
+pub mod measurement;
 mod table;
 mod width;
 pub mod words;
