@@ -45,9 +45,13 @@ fn of_channel(logs: &Logs, at: usize, channel: Channel) -> Option<Finding> {
         .map(|spike| spike.1)
         .max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
     let (title, unit, count) = (channel.title(), channel.unit(), spikes.len());
-    let samples = if count == 1 { "sample" } else { "samples" };
+    let (samples, lie) = if count == 1 {
+        ("sample", "lies")
+    } else {
+        ("samples", "lie")
+    };
     let seen = format!(
-        "{count} single {samples} of the {title} lie off both sides, by {largest:+.2} {unit} at most, at constant currents."
+        "{count} single {samples} of the {title} {lie} off both sides, by {largest:+.2} {unit} at most, at constant currents."
     );
     let cure = "Find the loose contact or the disturbance, and empty these cells in the log.";
     let evidence = Evidence::of(largest, 3.0 * sigma, channel);
