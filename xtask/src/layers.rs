@@ -19,7 +19,7 @@ struct Layers {
 }
 
 /// The checked crates; add an entry for a new one.
-const CRATES: [Layers; 14] = [
+const CRATES: [Layers; 15] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -96,6 +96,32 @@ const CRATES: [Layers; 14] = [
         ],
     },
     Layers {
+        sources: "model/measurement/src",
+        order: &[
+            &["statistics"],
+            &["finding"],
+            &["logs"],
+            &["lifting"],
+            &["rest_pressure"],
+            &[
+                "dead_pressure",
+                "load",
+                "pressure_unit",
+                "pump_below_cylinder",
+            ],
+            &[
+                "current_zero",
+                "delay",
+                "direction",
+                "equal_samples",
+                "logger",
+                "no_motion",
+                "repeated_run",
+                "spikes",
+            ],
+        ],
+    },
+    Layers {
         sources: "model/identification/src",
         order: &[
             &["parallel"],
@@ -143,7 +169,7 @@ const CRATES: [Layers; 14] = [
     Layers {
         sources: "workbench/results/src",
         order: &[
-            &["arguments", "web"],
+            &["arguments", "measurement", "web"],
             &["base_model"],
             &[
                 "closed_loop",

@@ -190,6 +190,7 @@ fn compare_shows_where_it_fails() {
         &[
             "campaign",
             "model",
+            "measurement",
             "error",
             "noise_floor",
             "channels",

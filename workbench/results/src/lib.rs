@@ -15,6 +15,7 @@ pub mod field_loop;
 pub mod fleet_summary;
 pub mod fmu_export;
 pub mod import;
+pub mod measurement;
 pub mod report;
 pub mod tuning;
 pub mod web;

@@ -1,5 +1,6 @@
 //! `hitch explain`: finds and adds missing effects until no further one is significant.
 
+use hitch_measurement::check;
 use std::path::{Path, PathBuf};
 
 use crate::commands::fleet::FleetArgs;
@@ -13,6 +14,7 @@ use hitch_results::arguments::model::ModelArg;
 use hitch_results::arguments::next_command;
 use hitch_results::arguments::search::SearchArgs;
 use hitch_results::explanation::{Base, Found, Posed, saving};
+use hitch_results::measurement;
 use hitch_results::report::explanation_page;
 
 /// Arguments of `hitch explain`.
@@ -90,8 +92,11 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     args.next.check()?;
     let options = args.search.options();
     let Posed {
-        model, experiment, ..
+        model,
+        campaign,
+        experiment,
     } = Base::load(&args.model, &args.baseline)?.posed(folder)?;
+    let faults = measurement::text(&check(&campaign, Some(&model)));
     let improved = saving(&model, args.out.as_deref());
     let found = Found::new(experiment, model, options, &improved);
     found.write_model(args.out.as_ref())?;
@@ -103,6 +108,6 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
             .as_deref()
             .filter(|path| !hitch_output::is_stdout(path));
         let next = next_command::after_explanation(out, folder, &args.model, &args.baseline);
-        format!("{}\n{written}{next}", found.shown)
+        format!("{faults}{}\n{written}{next}", found.shown)
     })
 }

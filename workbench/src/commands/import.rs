@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use hitch_campaign::{Bench, Run};
+use hitch_measurement::check;
 
 use hitch_output::error::Error;
 use hitch_output::text::{shell_word, wrapped};
@@ -11,6 +12,7 @@ use hitch_results::arguments::number::{LOADS_KG, number};
 use hitch_results::import::files::columns;
 use hitch_results::import::manifest::{Log, campaign, path_from};
 use hitch_results::import::{Columns, Files, dialogue, load_in_name};
+use hitch_results::measurement;
 
 /// Arguments of `hitch import`.
 #[derive(Debug, clap::Args)]
@@ -92,7 +94,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     )?;
     hitch_output::create_folder(&args.out)?;
     hitch_output::write_file(&manifest, text.as_bytes())?;
-    hitch_output::print(&told(args, &notes, &campaign.runs))
+    let faults = measurement::text(&check(&campaign, Some(&model)));
+    hitch_output::print(&(faults + &told(args, &notes, &campaign.runs)))
 }
 
 /// The test stand of a log.

@@ -11,6 +11,7 @@ mod worst;
 
 use hitch_campaign::Campaign;
 use hitch_identification::estimation::fit::ErrorSums;
+use hitch_measurement::{Finding, check};
 use hitch_plant::{Channel, Model};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -30,6 +31,8 @@ pub struct Comparison {
     pub campaign: String,
     /// Name of the model.
     pub model: String,
+    /// Faults of the measurement that the logs alone show; a model may be wrong where they are.
+    pub measurement: Vec<Finding>,
     /// Root mean square of (measured - simulated) / noise, each channel weighted alike.
     pub error: f64,
     /// Error of a perfect model.
@@ -63,15 +66,20 @@ impl Comparison {
     /// Compares a model with a campaign.
     pub fn new(campaign: &Campaign, model: &Model) -> (Self, Evaluated) {
         let evaluated = Evaluated::new(campaign, model);
-        (Self::of(&evaluated, model), evaluated)
+        let comparison = Self {
+            measurement: check(campaign, Some(model)),
+            ..Self::of(&evaluated, model)
+        };
+        (comparison, evaluated)
     }
 
-    /// The comparison of an evaluated model.
+    /// The comparison of an evaluated model, without its logs: no fault of the measurement is sought.
     pub fn of(evaluated: &Evaluated, model: &Model) -> Self {
         let sums = ErrorSums::of(&evaluated.fit);
         Self {
             campaign: evaluated.experiment.name.clone(),
             model: model.name.clone(),
+            measurement: Vec::new(),
             error: sums.error(),
             noise_floor: 1.0,
             channels: channels(evaluated, model, &sums),

@@ -5,6 +5,7 @@ use std::fmt;
 use hitch_plant::Channel;
 
 use super::{Cell, ChannelError, Comparison, Grouping};
+use crate::measurement;
 use crate::web::heat_table::{HeatTable, Shade};
 use hitch_output::text::colour::{by_sigma, sigma};
 use hitch_output::text::{Table, indented, wrapped};
@@ -20,6 +21,7 @@ impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let head = format!("Campaign {}, model {}", self.campaign, self.model);
         writeln!(f, "{}", wrapped(&head))?;
+        write!(f, "{}", measurement::text(&self.measurement))?;
         writeln!(
             f,
             "  error {} sigma (noise of the instruments: {:.2})\n",
