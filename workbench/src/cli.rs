@@ -1,11 +1,16 @@
 //! The command line.
 use clap::{CommandFactory, Parser, Subcommand};
 
+#[cfg(feature = "fmu")]
+use crate::commands::export_fmu;
+#[cfg(feature = "page")]
+use crate::commands::serve;
 use crate::commands::{
-    add, adopt, calibrate, changes, compare, completions, controller, diagnose, draft, ecu,
-    effects, explain, export_fmu, flash_calibration, import, loop_, main_job, man, model, record,
-    schema, serve, simulate, summary, tune,
+    add, adopt, calibrate, changes, compare, completions, controller, diagnose, draft, effects,
+    explain, import, loop_, main_job, man, model, schema, simulate, summary, tune,
 };
+#[cfg(feature = "ecu")]
+use crate::commands::{ecu, flash_calibration, record};
 use hitch_output::error::Error;
 
 /// The electro-hydraulic hitch: measurement -> physics -> firmware -> motion.
@@ -40,6 +45,7 @@ pub enum Command {
     Draft(draft::Args),
     /// Summarise the lines of many campaigns: machine by effect, and which machines differ
     Summary(summary::Args),
+    #[cfg(feature = "page")]
     /// Show campaign and model in the browser (local only): compare, rank and add effects
     Serve(serve::Args),
     /// List the catalogue of physical effects: equation, parameters, units, source, visibility
@@ -52,12 +58,16 @@ pub enum Command {
     Loop(loop_::Args),
     /// Run the firmware's controller on stdin/stdout, for an external plant
     Controller(controller::Args),
+    #[cfg(feature = "fmu")]
     /// Export the plant or the controller as an FMI 2.0 co-simulation unit (FMU)
     ExportFmu(export_fmu::Args),
+    #[cfg(feature = "ecu")]
     /// Run the firmware image on an emulated Cortex-M4 with plant, and CAN on a TCP port
     Ecu(ecu::Args),
+    #[cfg(feature = "ecu")]
     /// Write a calibration to a running ECU, with verification
     FlashCalibration(flash_calibration::Args),
+    #[cfg(feature = "ecu")]
     /// Record a campaign from a running ECU
     Record(record::Args),
     /// Import a campaign from existing logs (tables, MDF, CAN), which are read in place
@@ -88,16 +98,21 @@ impl Command {
             Self::Adopt(args) => adopt::run(args),
             Self::Changes(args) => changes::run(args),
             Self::Summary(args) => summary::run(args),
+            #[cfg(feature = "page")]
             Self::Serve(args) => serve::run(args),
             Self::Effects(args) => effects::run(args),
             Self::Model(args) => model::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Loop(args) => loop_::run(args),
             Self::Controller(args) => controller::run(args),
+            #[cfg(feature = "fmu")]
             Self::ExportFmu(args) => export_fmu::run(args),
             Self::Draft(args) => draft::run(args),
+            #[cfg(feature = "ecu")]
             Self::Ecu(args) => ecu::run(args),
+            #[cfg(feature = "ecu")]
             Self::FlashCalibration(args) => flash_calibration::run(args),
+            #[cfg(feature = "ecu")]
             Self::Record(args) => record::run(args),
             Self::Import(args) => import::run(args),
             Self::Schema(args) => schema::run(args),

@@ -17,15 +17,17 @@ use std::process::{Command, ExitCode};
 use anyhow::{Context, Result, bail};
 use arm_build::toolchain::Way;
 use arm_build::{process, setup, workspace};
-use test::Tests;
+use test::{Selection, Tests};
 use timings::Timings;
 
 const USAGE: &str = "\
 usage: cargo xtask <task> [--arm rustup|debian] [--timings]
 
-  test [--only TEXT]
+  test [--only TEXT | --since COMMIT]
           set up what is missing, build the ARM images, run every test, say how many passed; or only the tests of the
-          programs and modules with this text in their names, e.g. `motion teach`
+          programs and modules with this text in their names, e.g. `motion teach`; or those of the packages that were
+          changed since a commit and of all that depend on them, without acceptance tests of more than 8 s, which are
+          named at the end: for work between two whole tests
   check   formatting, the order of folders, circles of files, types of the scripts, clippy and rustdoc, with warnings denied
   ci      check, coverage, then test; mutants as well if HITCH_THOROUGH is set, else it names what they have not been run on
   arm     build the ARM images, say how large they are, and hold them to their budgets
@@ -79,7 +81,7 @@ fn run(arguments: &[String]) -> Result<()> {
     let mut timings = Timings::new(options.timings);
     let way = options.way;
     match task.as_str() {
-        "test" => Tests::build(way, &mut timings)?.run(&options.only, &mut timings)?,
+        "test" => Tests::build(way, &mut timings)?.run(&options.selection, &mut timings)?,
         "check" => {
             check::run(way, &mut timings)?;
             timings.print();
@@ -95,7 +97,7 @@ fn run(arguments: &[String]) -> Result<()> {
                     mutants::report()
                 }
             })?;
-            tests.run("", &mut timings)?;
+            tests.run(&Selection::All, &mut timings)?;
         }
         "arm" | "sizes" | "stack" | "coverage" | "a2l" => build_firmware_tool(task, way)?,
         "try-page" => process::run(&mut package("try-page"))?,
@@ -118,7 +120,7 @@ struct Options {
     way: Option<Way>,
     timings: bool,
     again: bool,
-    only: String,
+    selection: Selection,
 }
 
 impl Options {
@@ -129,7 +131,12 @@ impl Options {
             match word {
                 "--arm" => options.way = Some(words.next().context(USAGE)?.parse()?),
                 "--timings" => options.timings = true,
-                "--only" => options.only = words.next().context(USAGE)?.to_owned(),
+                "--only" => {
+                    options.selection = Selection::Named(words.next().context(USAGE)?.to_owned());
+                }
+                "--since" => {
+                    options.selection = Selection::Since(words.next().context(USAGE)?.to_owned());
+                }
                 "--again" => options.again = true,
                 _ => bail!("unknown option `{word}`\n{USAGE}"),
             }

@@ -9,7 +9,9 @@ use hitch_input::source_file::SourceFile;
 use hitch_plant::Linkage;
 
 use crate::columns::{ColumnSettings, Source, unassigned};
-use crate::contents::{LogColumn, without_group};
+#[cfg(feature = "mdf")]
+use crate::contents::LogColumn;
+use crate::contents::without_group;
 use crate::recorded::CampaignError;
 use crate::run_columns::{LIFT, LIFTS, TIME};
 use crate::series::Series;
@@ -101,6 +103,7 @@ pub fn read(
 }
 
 /// The channels with samples.
+#[cfg(feature = "mdf")]
 pub fn survey(file: &dyn ChannelFile) -> Vec<LogColumn> {
     let mut columns: Vec<LogColumn> = Vec::new();
     for (index, channel) in file.channels().iter().enumerate() {

@@ -24,7 +24,9 @@ mod cut;
 mod dropout;
 pub mod folder;
 mod ideal_times;
+mod left_out;
 mod manifest;
+#[cfg(feature = "mdf")]
 mod mdf_log;
 mod number_log;
 mod own_rate;

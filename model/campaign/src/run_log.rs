@@ -10,13 +10,14 @@ use hitch_plant::{Channel, Linkage};
 use crate::bus_log::{BusSettings, Format};
 use crate::columns::ColumnSettings;
 use crate::cut::Cut;
-use crate::mdf_log::MdfFile;
+#[cfg(feature = "mdf")]
+use crate::mdf_log::{self, MdfFile};
 use crate::number_log::NumberLog;
 use crate::recorded::{Bench, CampaignError, Run};
 use crate::run_columns::{LIFT, LOWER, OIL_TEMPERATURE, TIME};
 use crate::scale::nominal_linkage;
 use crate::table::{LONGEST_STEP_S, Table};
-use crate::{bus_log, channel_log, csv_log, mdf_log};
+use crate::{bus_log, channel_log, csv_log, left_out};
 
 /// Oil temperature of a run without a stated or logged one, degrees Celsius: that of the paper's valve tables.
 const ASSUMED_OIL_TEMPERATURE_C: f64 = 40.0;
@@ -51,11 +52,13 @@ impl Default for Settings<'_> {
 /// The first fault, with file, line and column.
 pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError> {
     bus_log::check_known(path)?;
+    left_out::check(path)?;
     if let Some(format) = Format::of(path) {
         let source = Arc::new(format.source(path)?);
         let ecu = BusSettings::default();
         return bus_log::read(&source, format, settings.bus.unwrap_or(&ecu));
     }
+    #[cfg(feature = "mdf")]
     if mdf_log::is_mdf(path) {
         let file = MdfFile::open(path)?;
         return channel_log::read(&file, settings.columns, settings.linkage);

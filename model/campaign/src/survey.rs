@@ -7,12 +7,15 @@ use hitch_input::source_file::SourceFile;
 use hitch_input::written_unit::above_air;
 
 use crate::bus_log::Format;
-use crate::mdf_log::MdfFile;
+#[cfg(feature = "mdf")]
+use crate::channel_log;
+#[cfg(feature = "mdf")]
+use crate::mdf_log::{self, MdfFile};
 use crate::number_log::NumberLog;
 use crate::recorded::CampaignError;
 use crate::run_columns::{COLUMNS, TIME, column};
 use crate::scale::is_unit_of;
-use crate::{bus_log, channel_log, columns, csv_log, mdf_log};
+use crate::{bus_log, columns, csv_log, left_out};
 
 pub use crate::bus_log::Signals;
 pub use crate::contents::{LogColumn, OF_GROUP, Survey, without_group};
@@ -26,9 +29,11 @@ impl Survey {
     /// The log cannot be read.
     pub fn of(path: &Path) -> Result<Self, CampaignError> {
         bus_log::check_known(path)?;
+        left_out::check(path)?;
         if let Some(format) = Format::of(path) {
             return format.source(path).map(|_| Self::Bus);
         }
+        #[cfg(feature = "mdf")]
         if mdf_log::is_mdf(path) {
             let columns = channel_log::survey(&MdfFile::open(path)?);
             let notes = Vec::new();

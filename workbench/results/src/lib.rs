@@ -13,6 +13,7 @@ pub mod draft;
 pub mod explanation;
 pub mod field_loop;
 pub mod fleet_summary;
+#[cfg(feature = "fmu")]
 pub mod fmu_export;
 pub mod import;
 pub mod measurement;

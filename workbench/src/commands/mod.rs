@@ -8,10 +8,13 @@ pub mod completions;
 pub mod controller;
 pub mod diagnose;
 pub mod draft;
+#[cfg(feature = "ecu")]
 pub mod ecu;
 pub mod effects;
 pub mod explain;
+#[cfg(feature = "fmu")]
 pub mod export_fmu;
+#[cfg(feature = "ecu")]
 pub mod flash_calibration;
 pub mod fleet;
 pub mod import;
@@ -21,8 +24,10 @@ pub mod main_job;
 pub mod man;
 pub mod model;
 mod next_folder;
+#[cfg(feature = "ecu")]
 pub mod record;
 pub mod schema;
+#[cfg(feature = "page")]
 pub mod serve;
 pub mod simulate;
 pub mod summary;

@@ -17,12 +17,18 @@ use anyhow::{Context, Result, ensure};
 use arm_build::programs::Program;
 use arm_build::workspace;
 
+use super::affected;
 use super::programs::{self, Built};
 
 /// Recorded times, relative to the workspace's root.
 const RECORD: &str = "xtask/test-seconds.txt";
 /// Shorter jobs are not recorded, s.
 const SHORTEST_S: f64 = 1.0;
+
+/// Package of the acceptance tests.
+const ACCEPTANCE: &str = "host-tests ";
+/// Time from which an acceptance test is left to the whole test, s.
+const LONG_S: f64 = 8.0;
 
 /// The program with tests in real time: they mostly wait, and run one after the other beside the others. Two at a time, with a
 /// browser among them, leave the ECU behind real time on two processors.
@@ -58,6 +64,43 @@ impl fmt::Display for Counts {
     }
 }
 
+/// Which jobs run.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Selection {
+    /// Every one.
+    #[default]
+    All,
+    /// Those with a text in their names.
+    Named(String),
+    /// Those of packages that changes since a commit concern; of the acceptance tests, which depend on everything, the short ones.
+    Since(String),
+}
+
+impl Selection {
+    /// Removes what is not selected; returns the names of the long jobs that changes concern and that are left out.
+    fn select(&self, jobs: &mut Vec<Job>, time_s: impl Fn(&Job) -> f64) -> Result<Vec<String>> {
+        let mut left_out = Vec::new();
+        match self {
+            Self::All => {}
+            Self::Named(text) => jobs.retain(|job| job.name.contains(text)),
+            Self::Since(commit) => {
+                let folders = affected::since(commit)?;
+                let folders: Vec<PathBuf> = folders
+                    .iter()
+                    .map(|folder| workspace::root().join(folder))
+                    .collect();
+                jobs.retain(|job| folders.contains(&job.program.folder));
+                let is_short =
+                    |job: &Job| !job.name.starts_with(ACCEPTANCE) || time_s(job) < LONG_S;
+                let long = jobs.iter().filter(|job| !is_short(job));
+                left_out = long.map(|job| job.name.clone()).collect();
+                jobs.retain(is_short);
+            }
+        }
+        Ok(left_out)
+    }
+}
+
 /// A module of a test program.
 #[derive(Clone, Debug)]
 struct Job {
@@ -80,12 +123,15 @@ pub struct Done {
     pub seconds: f64,
 }
 
-/// Runs the tests of the programs with these environment variables; prints the output of each job when it has ended. Only
-/// jobs with a certain text in their names run.
+/// Runs the tests of the programs with these environment variables; prints the output of each job when it has ended.
 ///
 /// # Errors
 /// If a program does not start, or a job reports another number of tests than it has.
-pub fn run(built: &Built, only: &str, variables: &[(&str, PathBuf)]) -> Result<Vec<Done>> {
+pub fn run(
+    built: &Built,
+    selection: &Selection,
+    variables: &[(&str, PathBuf)],
+) -> Result<Vec<Done>> {
     let mut jobs = Vec::new();
     for program in built.tests() {
         jobs.extend(of_program(program)?);
@@ -93,7 +139,7 @@ pub fn run(built: &Built, only: &str, variables: &[(&str, PathBuf)]) -> Result<V
     let expected_s = recorded();
     let time_s = |job: &Job| expected_s.get(&job.name).copied().unwrap_or_default();
     jobs.sort_by(|a, b| time_s(b).total_cmp(&time_s(a)));
-    jobs.retain(|job| job.name.contains(only));
+    let left_out = selection.select(&mut jobs, time_s)?;
     let of = |lane: Lane| jobs.iter().filter(move |job| job.lane == lane).collect();
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let (computing, waiting): (Vec<&Job>, Vec<&Job>) = (of(Lane::Computing), of(Lane::Waiting));
@@ -103,7 +149,11 @@ pub fn run(built: &Built, only: &str, variables: &[(&str, PathBuf)]) -> Result<V
         (computed, waited.join().expect("no lane panics"))
     });
     let alone: Vec<&Job> = of(Lane::Alone);
-    Ok([computed?, waited?, in_lanes(&alone, 1, variables)?].concat())
+    let done = [computed?, waited?, in_lanes(&alone, 1, variables)?].concat();
+    if !left_out.is_empty() {
+        println!("\nleft to the whole test:\n  {}", left_out.join("\n  "));
+    }
+    Ok(done)
 }
 
 /// The jobs of a program.

@@ -1,5 +1,6 @@
 //! Every test: those of the host, and those that need the emulated target or a browser.
 
+mod affected;
 mod jobs;
 mod programs;
 
@@ -12,6 +13,7 @@ use arm_build::toolchain::{ARM, Way};
 use arm_build::{images, process, setup};
 
 use crate::timings::{self, Timings};
+pub use jobs::Selection;
 use jobs::{Counts, Done};
 use programs::Built;
 
@@ -71,11 +73,11 @@ impl Tests {
         process::run(&mut process::command(&self.tools, arguments))
     }
 
-    /// Runs the tests whose program or module has `only` in its name; finally prints a line with their numbers.
+    /// Runs the selected tests; finally prints a line with their numbers.
     ///
     /// # Errors
     /// If one fails, or an image is over its budget.
-    pub fn run(&self, only: &str, timings: &mut Timings) -> Result<()> {
+    pub fn run(&self, selection: &Selection, timings: &mut Timings) -> Result<()> {
         timings.measured("images: checksums, sizes, stacks", || {
             self.tool(&["arm", self.way.name()])
         })?;
@@ -86,10 +88,10 @@ impl Tests {
             (STACK_VARIABLE, stack_bound(self.way)?.into()),
         ];
         let done = timings.measured("run of the tests", || {
-            jobs::run(&self.built, only, &variables)
+            jobs::run(&self.built, selection, &variables)
         })?;
         if timings.asked() {
-            if only.is_empty() {
+            if *selection == Selection::All {
                 jobs::record(&done)?;
             }
             let rows = done.iter().map(|job| (job.name.clone(), job.seconds));

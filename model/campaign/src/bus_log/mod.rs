@@ -15,6 +15,7 @@ mod frame;
 mod frame_table;
 mod line;
 mod listener;
+#[cfg(feature = "mdf")]
 mod mdf_frames;
 mod settings;
 mod signal;
@@ -48,6 +49,7 @@ pub enum Format {
     /// Vector binary.
     Blf,
     /// MDF with frames.
+    #[cfg(feature = "mdf")]
     Mdf,
     /// Text table with a frame in each row.
     Table,
@@ -61,6 +63,7 @@ impl Format {
             "log" => Some(Self::Candump),
             "asc" => Some(Self::Asc),
             "blf" => Some(Self::Blf),
+            #[cfg(feature = "mdf")]
             "mf4" | "mdf" => mdf_frames::is_one(path).then_some(Self::Mdf),
             "csv" | "txt" => {
                 let source = SourceFile::read_any(path).ok()?;
@@ -77,7 +80,9 @@ impl Format {
     pub fn source(self, path: &Path) -> Result<SourceFile, CampaignError> {
         match self {
             Self::Candump | Self::Asc | Self::Table => SourceFile::read_any(path),
-            Self::Blf | Self::Mdf => Ok(SourceFile::named(path)),
+            Self::Blf => Ok(SourceFile::named(path)),
+            #[cfg(feature = "mdf")]
+            Self::Mdf => Ok(SourceFile::named(path)),
         }
     }
 }
@@ -134,7 +139,9 @@ pub fn read(
     let series = series.map(|(column, series)| (column.name, 0, series));
     let cells = match format {
         Format::Candump | Format::Asc | Format::Table => Cells::OneALine,
-        Format::Blf | Format::Mdf => Cells::Nowhere,
+        Format::Blf => Cells::Nowhere,
+        #[cfg(feature = "mdf")]
+        Format::Mdf => Cells::Nowhere,
     };
     let table = Table::of_series(source, (0, rows), series, cells)?;
     let table = table.since(listener.origin_s());
@@ -154,6 +161,7 @@ fn read_frames(
         Format::Candump => candump::read(source, sink),
         Format::Asc => asc::read(source, sink),
         Format::Blf => blf::read(source, sink),
+        #[cfg(feature = "mdf")]
         Format::Mdf => mdf_frames::read(source, sink),
         Format::Table => frame_table::read(source, sink).map(|()| Ending::Whole),
     }

@@ -4,11 +4,13 @@
 
 mod mat_columns;
 mod number_column;
+#[cfg(feature = "parquet")]
 mod parquet;
 
 use std::path::Path;
 
-use hitch_input::file_kind;
+#[cfg(feature = "parquet")]
+use hitch_input::file_kind::is_parquet;
 use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
@@ -49,7 +51,8 @@ impl NumberLog {
         let bytes = SourceFile::bytes(path)?;
         let columns = match end.as_str() {
             "mat" if hitch_mat_file::is_one(&bytes) => mat_columns::read(&bytes),
-            "parquet" if file_kind::is_parquet(&bytes) => parquet::read(bytes),
+            #[cfg(feature = "parquet")]
+            "parquet" if is_parquet(&bytes) => parquet::read(bytes),
             _ => return Ok(None),
         };
         let source = SourceFile::named(path);

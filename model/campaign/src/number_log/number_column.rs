@@ -1,6 +1,7 @@
 //! A column of numbers in a binary file.
 
 /// Most numbers of a file: as text they would fill the longest file that is read.
+#[cfg(feature = "parquet")]
 pub const MOST_NUMBERS: usize = 64 << 20;
 
 /// A column of numbers.
