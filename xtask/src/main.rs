@@ -4,6 +4,7 @@ mod ablation;
 mod benchmarks;
 mod check;
 mod circles;
+mod dependencies;
 mod documents;
 mod layers;
 mod mutants;
@@ -45,6 +46,8 @@ usage: cargo xtask <task> [--arm rustup|debian] [--timings]
   replay [--against COMMIT] [--steps N] [--seed SEED]
           feed controller and safety envelope of an earlier commit and of the present sources the same random and
           recorded steps, and list every difference; exit code 1 if docs/safety.md does not explain all of them
+  dependencies
+          build the program into an empty folder, and print what each direct dependency of it costs
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
   try-page build target/try-page/index.html, the closed loop of controller and plant in one page without server and network
   setup   find or install the ARM toolchain and the emulator
@@ -100,6 +103,7 @@ fn run(arguments: &[String]) -> Result<()> {
             tests.run(&Selection::All, &mut timings)?;
         }
         "arm" | "sizes" | "stack" | "coverage" | "a2l" => build_firmware_tool(task, way)?,
+        "dependencies" => dependencies::run()?,
         "try-page" => process::run(&mut package("try-page"))?,
         "mutants" => mutants::run(options.again)?,
         "setup" => setup::run(way)?,

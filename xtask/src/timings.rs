@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
@@ -17,10 +18,12 @@ pub struct Timings {
 /// Something that cargo has compiled or run.
 #[derive(Debug, PartialEq)]
 pub struct Unit {
-    package: String,
+    /// Name of its package.
+    pub package: String,
     /// Empty for a library, otherwise its name and kind.
     target: String,
-    seconds: f64,
+    /// Time of one core, s.
+    pub seconds: f64,
 }
 
 impl Timings {
@@ -107,12 +110,12 @@ impl Timings {
     }
 }
 
-/// The units of the latest build with `--timings`.
+/// The units of the latest build with `--timings` into a folder.
 ///
 /// # Errors
 /// If cargo's report is not there.
-pub fn units() -> Result<Vec<Unit>> {
-    let path = workspace::target().join("cargo-timings/cargo-timing.html");
+pub fn units(folder: &Path) -> Result<Vec<Unit>> {
+    let path = folder.join("cargo-timings/cargo-timing.html");
     let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     units_in(&text).with_context(|| format!("{} has no list of units", path.display()))
 }

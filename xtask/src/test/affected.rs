@@ -12,8 +12,11 @@ use toml::de::{DeTable, DeValue};
 const SHARED: [&str; 3] = ["Cargo.toml", "Cargo.lock", ".cargo/config.toml"];
 
 /// A package of the workspace.
-struct Package {
-    folder: PathBuf,
+pub struct Package {
+    /// Its folder, from the workspace's root.
+    pub folder: PathBuf,
+    /// Names of the packages that it depends on, without those of its tests.
+    pub needed: BTreeSet<String>,
     /// Names of the packages that it or its tests depend on.
     dependencies: BTreeSet<String>,
 }
@@ -62,8 +65,11 @@ fn concerned(packages: &BTreeMap<String, Package>, files: &[&str]) -> BTreeSet<S
     }
 }
 
-/// The packages by their names.
-fn packages() -> Result<BTreeMap<String, Package>> {
+/// The packages of the workspace by their names.
+///
+/// # Errors
+/// If a manifest cannot be read.
+pub fn packages() -> Result<BTreeMap<String, Package>> {
     let text = manifest(Path::new(""))?;
     let root = DeTable::parse(&text)?.into_inner();
     let members = table(&root, "workspace").and_then(|workspace| workspace.get("members"));
@@ -83,10 +89,12 @@ fn package(folder: PathBuf) -> Result<(String, Package)> {
     let name = table(&manifest, "package").and_then(|package| package.get("name"));
     let name = name.and_then(|name| name.get_ref().as_str());
     let name = name.with_context(|| format!("{} has no name", folder.display()))?;
-    let mut dependencies = BTreeSet::new();
-    add_dependencies(&manifest, &mut dependencies);
+    let [mut needed, mut dependencies] = [BTreeSet::new(), BTreeSet::new()];
+    add_dependencies(&manifest, "dev-", &mut needed);
+    add_dependencies(&manifest, "none", &mut dependencies);
     let package = Package {
         folder,
+        needed,
         dependencies,
     };
     Ok((name.to_owned(), package))
@@ -96,16 +104,19 @@ fn table<'t>(outer: &'t DeTable<'_>, key: &str) -> Option<&'t DeTable<'t>> {
     outer.get(key)?.get_ref().as_table()
 }
 
-/// Adds the names in each table of dependencies, those for some targets or for tests too.
-fn add_dependencies(table: &DeTable<'_>, names: &mut BTreeSet<String>) {
+/// Adds the names in each table of dependencies, those for some targets too, without tables whose names begin with `omit`.
+fn add_dependencies(table: &DeTable<'_>, omit: &str, names: &mut BTreeSet<String>) {
     for (key, value) in table {
         let Some(inner) = value.get_ref().as_table() else {
             continue;
         };
+        if key.get_ref().starts_with(omit) {
+            continue;
+        }
         if key.get_ref().ends_with("dependencies") {
             names.extend(inner.keys().map(|name| name.get_ref().to_string()));
         } else {
-            add_dependencies(inner, names);
+            add_dependencies(inner, omit, names);
         }
     }
 }

@@ -10,9 +10,10 @@ use std::thread;
 
 use anyhow::{Context, Result, bail};
 use arm_build::toolchain::{ARM, Way};
-use arm_build::{images, process, setup};
+use arm_build::{images, process, setup, workspace};
 
 use crate::timings::{self, Timings};
+pub use affected::packages;
 pub use jobs::Selection;
 use jobs::{Counts, Done};
 use programs::Built;
@@ -59,7 +60,7 @@ impl Tests {
             })
         })?;
         if timings.asked() {
-            timings.add_units(&timings::units()?);
+            timings.add_units(&timings::units(&workspace::target())?);
         }
         let tools = built.binary("firmware_tools")?.to_owned();
         Ok(Self { way, built, tools })
