@@ -15,13 +15,13 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Parser;
-use comfy_table::{Table, presets};
 use hitch_effects::TermEffect;
 use hitch_effects::expression::{ParameterDefinition, TermDefinition};
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::explain;
 use hitch_plant::{AddedEffect, Dynamics, Effect, Model, Place};
+use host_tests::markdown::table;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use truth_rigs::hidden_effects::starting_point;
@@ -120,14 +120,8 @@ fn main() -> Result<()> {
 /// Measures and prints a series of cases by increasing size.
 fn print(what: &str, mut cases: Vec<(f64, Case)>) -> Result<()> {
     cases.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut table = Table::new();
-    table.load_preset(presets::ASCII_MARKDOWN).set_header([
-        what,
-        "time, s",
-        "exponent",
-        "peak memory, MB",
-        "exponent",
-    ]);
+    let header = [what, "time, s", "exponent", "peak memory, MB", "exponent"];
+    let mut rows = Vec::new();
     let mut last: Option<(f64, Taken)> = None;
     for (size, case) in cases {
         let taken = case.in_a_process()?;
@@ -139,7 +133,7 @@ fn print(what: &str, mut cases: Vec<(f64, Case)>) -> Result<()> {
                 )
             })
         };
-        table.add_row([
+        rows.push([
             size.to_string(),
             format!("{:.2}", taken.time_s),
             exponent(|taken| taken.time_s),
@@ -148,7 +142,7 @@ fn print(what: &str, mut cases: Vec<(f64, Case)>) -> Result<()> {
         ]);
         last = Some((size, taken));
     }
-    println!("{table}\n");
+    println!("{}\n", table(header, &rows));
     Ok(())
 }
 

@@ -8,7 +8,7 @@
 //! Prints a Markdown table for each family and plan, and every failure with the command that repeats it. The rig shares no equation with the fitted model.
 
 use clap::Parser;
-use comfy_table::{Table, presets};
+use host_tests::markdown;
 use indicatif::{ProgressBar, ProgressStyle};
 use truth_rigs::hidden_effects::foreign::Adopted;
 use truth_rigs::hidden_effects::grade::{Graded, Posed};
@@ -205,14 +205,12 @@ fn show_foreign(machines: &[Machine], family: Family, plan: Plan) {
 }
 
 /// A Markdown table of two columns.
-fn table<L: Into<String>>(header: [&str; 2], rows: impl IntoIterator<Item = (L, String)>) -> Table {
-    let mut table = Table::new();
-    table.load_preset(presets::ASCII_MARKDOWN);
-    table.set_header(header);
-    for (label, cell) in rows {
-        table.add_row([label.into(), cell]);
-    }
-    table
+fn table<L: Into<String>>(
+    header: [&str; 2],
+    rows: impl IntoIterator<Item = (L, String)>,
+) -> String {
+    let rows = rows.into_iter().map(|(label, cell)| [label.into(), cell]);
+    markdown::table(header, &rows.collect::<Vec<_>>())
 }
 
 /// A quantile of the times as text.

@@ -7,6 +7,7 @@ pub mod html_report;
 pub mod instruction_counts;
 pub mod live_ecu;
 pub mod loop_tab;
+pub mod markdown;
 pub mod page_server;
 pub mod program;
 pub mod python;

@@ -8,12 +8,12 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
+use futures_util::stream::{Stream, unfold};
 use hitch_identification::estimate::Estimate;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use tokio_stream::wrappers::BroadcastStream;
-use tokio_stream::{Stream, StreamExt};
+use tokio::sync::broadcast::error::RecvError;
 
 use super::fault::Fault;
 use super::own_term::{FormulaElements, TermForm};
@@ -221,9 +221,17 @@ async fn go(InBody(session, to): InBody<OfStep>) -> Answer {
 async fn events(
     InQuery(session, _): InQuery,
 ) -> Result<Sse<impl Stream<Item = Result<Event, axum::Error>>>, Refusal> {
-    let messages = BroadcastStream::new(lock(&session).messages.subscribe());
-    // A tab that is too far behind has missed messages; the state that it asks for at the end has all of it.
-    let known = messages.filter_map(Result::ok);
-    let events = known.map(|message| Event::default().json_data(message));
+    let messages = lock(&session).messages.subscribe();
+    let events = unfold(messages, |mut messages| async {
+        let message = loop {
+            match messages.recv().await {
+                Ok(message) => break message,
+                // A tab that is too far behind has missed messages; the state that it asks for at the end has all of it.
+                Err(RecvError::Lagged(_)) => {}
+                Err(RecvError::Closed) => return None,
+            }
+        };
+        Some((Event::default().json_data(message), messages))
+    });
     Ok(Sse::new(events).keep_alive(KeepAlive::default()))
 }

@@ -6,9 +6,9 @@ use std::io::{self, Write as _};
 use std::time::Duration;
 
 use axum::http::StatusCode;
+use futures_util::{Stream, StreamExt};
 use tokio::task::block_in_place;
 use tokio::time::timeout;
-use tokio_stream::{Stream, StreamExt};
 
 use super::folder::Upload;
 use crate::refusal::Refusal;
@@ -109,11 +109,11 @@ mod tests {
         let folders = Folders::default();
         let upload = folders.begin().unwrap();
         let runtime = tokio::runtime::Runtime::new().unwrap();
-        let chunks = tokio_stream::iter(chunks);
+        let chunks = futures_util::stream::iter(chunks);
         let within = Duration::from_millis(50);
         let outcome = runtime.block_on(async {
             if waits {
-                let chunks = chunks.chain(tokio_stream::pending());
+                let chunks = chunks.chain(futures_util::stream::pending());
                 receive(&upload, "a.csv", chunks, within).await
             } else {
                 receive(&upload, "a.csv", chunks, within).await
