@@ -152,3 +152,44 @@ fn clocks_without_sense() {
         &campaign(&hitch(100.0), ALL, (0..150).map(picoseconds)),
     );
 }
+
+/// Each subset of the measured channels of a lift: also an angle alone, which determines no constant.
+#[test]
+fn every_subset_of_channels_is_compared_and_fitted() {
+    let channels: Vec<&str> = ALL.split(',').skip(3).collect();
+    let row = |i: usize| {
+        let lifted = i.saturating_sub(50) as f64;
+        let noise = |channel: usize, sigma: f64| sigma * scattered(i, channel);
+        [
+            if i > 50 { 20.0 } else { 4.0 } + noise(0, 0.3),
+            11.5 + noise(1, 0.2),
+            if i > 50 { 6.0 } else { 0.0 } + noise(2, 0.1),
+            60.0 + 0.1 * lifted + noise(3, 0.05),
+        ]
+    };
+    for subset in 1..1 << channels.len() {
+        let picked = |k: &usize| subset >> k & 1 == 1;
+        let picked: Vec<usize> = (0..channels.len()).filter(picked).collect();
+        let names: Vec<&str> = picked.iter().map(|&k| channels[k]).collect();
+        let header = format!("time_s,lift_current_a,lower_current_a,{}", names.join(","));
+        let rows = (0..150).map(|i| {
+            let values = picked.iter().map(|&k| format!("{:.3}", row(i)[k]));
+            let values: Vec<String> = values.collect();
+            format!(
+                "{:.2},{},0,{}",
+                i as f64 * 0.02,
+                pulled_a(i),
+                values.join(",")
+            )
+        });
+        let dir = campaign(&hitch(100.0), &header, rows);
+        for arguments in [
+            &["compare", ".", "--json", "-"][..],
+            &["model", "fit", ".", "--out", "fitted.toml"],
+        ] {
+            let output = run(dir.path(), arguments);
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(output.status.success(), "{names:?}, {arguments:?}: {said}");
+        }
+    }
+}

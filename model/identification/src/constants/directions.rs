@@ -41,16 +41,18 @@ impl Directions {
         let correlation = DMatrix::from_fn(size, size, |i, j| {
             prior.covariance[(i, j)] / (sigma[i] * sigma[j])
         });
-        let principal = correlation.symmetric_eigen();
-        let mut order: Vec<usize> = (0..size)
-            .filter(|&k| principal.eigenvalues[k] >= smallest_variance)
+        // An empty matrix has no decomposition.
+        let principal = (size > 0).then(|| correlation.symmetric_eigen());
+        let axes = principal.iter().flat_map(|principal| {
+            let values = principal.eigenvalues.iter().copied();
+            values.zip(principal.eigenvectors.column_iter())
+        });
+        let mut axes: Vec<_> = axes.filter(|axis| axis.0 >= smallest_variance).collect();
+        axes.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let columns: Vec<DVector<f64>> = axes
+            .into_iter()
+            .map(|(variance, axis)| (axis * variance.sqrt()).component_mul(&sigma))
             .collect();
-        order.sort_by(|&a, &b| principal.eigenvalues[b].total_cmp(&principal.eigenvalues[a]));
-        let column = |&k: &usize| {
-            let scaled = principal.eigenvectors.column(k) * principal.eigenvalues[k].sqrt();
-            scaled.component_mul(&sigma)
-        };
-        let columns: Vec<DVector<f64>> = order.iter().map(column).collect();
         Self {
             columns: if columns.is_empty() {
                 DMatrix::zeros(size, 0)
