@@ -11,7 +11,7 @@ use hitch_results::arguments::model::ModelArg;
 use hitch_results::arguments::number::{LOADS_KG, number};
 use hitch_results::import::files::columns;
 use hitch_results::import::manifest::{Log, campaign, path_from};
-use hitch_results::import::{Columns, Files, dialogue, load_in_name};
+use hitch_results::import::{Columns, Files, dialogue, loads_in_name};
 use hitch_results::measurement;
 
 /// Arguments of `hitch import`.
@@ -109,24 +109,34 @@ fn bench(args: &Args, file: &Path) -> Result<Bench, Error> {
         let port_pressure_bar = args.port_pressure.ok_or_else(missing)?;
         return Ok(Bench::Flow { port_pressure_bar });
     }
-    let missing = || {
+    if let Some(load_kg) = args.load {
+        return Ok(Bench::Hitch { load_kg });
+    }
+    let wrong = |what: &str| {
         let name = file.display();
-        Error::Usage(format!(
-            "{name}: the load at the hitch is missing; give it with --load KG"
-        ))
+        Error::Usage(format!("{name}: {what}; give it with --load KG"))
     };
-    let load_kg = args.load.or_else(|| load_in_name(file));
-    Ok(Bench::Hitch {
-        load_kg: load_kg.ok_or_else(missing)?,
-    })
+    match loads_in_name(file)[..] {
+        [load_kg] => Ok(Bench::Hitch { load_kg }),
+        [] => Err(wrong("the load at the hitch is missing")),
+        [first, second, ..] => {
+            let both = format!("its name has the loads {first} kg and {second} kg");
+            Err(wrong(&both))
+        }
+    }
 }
 
 fn told(args: &Args, notes: &[String], runs: &[Run]) -> String {
     let mut text: String = notes.iter().map(|note| wrapped(note) + "\n").collect();
     for run in runs {
         let seconds = run.duration_s();
+        let load = match run.bench {
+            Bench::Hitch { load_kg } if args.load.is_some() => format!(", {load_kg} kg as given"),
+            Bench::Hitch { load_kg } => format!(", {load_kg} kg by its name"),
+            Bench::Flow { .. } => String::new(),
+        };
         let run = format!(
-            "run {}: {} samples, {seconds:.1} s",
+            "run {}: {} samples, {seconds:.1} s{load}",
             run.file,
             run.time_s.len()
         );

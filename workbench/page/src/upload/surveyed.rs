@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::proposal::{Group, Proposal, title};
-use hitch_results::import::{Files, Kind, Taken, load_in_name};
+use hitch_results::import::{Files, Kind, Taken, loads_in_name};
 
 /// What the files of an upload are.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -129,7 +129,10 @@ impl ProposedCampaign {
         let name = name.map_or_else(|| "campaign".into(), |name| name.to_string_lossy());
         let log = |log: &PathBuf| ProposedLog {
             file: file_name(log),
-            load_kg: load_in_name(log),
+            load_kg: match loads_in_name(log)[..] {
+                [load_kg] => Some(load_kg),
+                _ => None,
+            },
         };
         let signal = |(key, unit): (&'static str, &'static str)| {
             let units: Vec<&str> = usual_units(key).collect();

@@ -18,6 +18,6 @@ pub mod words;
 
 pub use columns::Kind;
 pub use files::{Columns, Files};
-pub use load::load_in_name;
+pub use load::loads_in_name;
 pub use mapping::{Mapping, Taken, Undetermined};
 pub use note::Note;
