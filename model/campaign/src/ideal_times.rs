@@ -36,13 +36,20 @@ fn numbers(at_s: &[f64], trial_s: f64) -> Vec<f64> {
     at_s.iter().map(number).collect()
 }
 
-/// Slope of the regression line of times over numbers, s.
-fn slope(at_s: &[f64], numbers: &[f64]) -> f64 {
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let (mean_s, mean) = (mean(at_s), mean(numbers));
-    let both = at_s.iter().zip(numbers);
-    let products = both.map(|(time_s, n)| (time_s - mean_s) * (n - mean));
-    products.sum::<f64>() / numbers.iter().map(|n| (n - mean).powi(2)).sum::<f64>()
+/// The vertices of the upper convex hull of points whose abscissae do not fall; the lower one with `side` -1.
+fn hull(points: &[(f64, f64)], side: f64) -> Vec<(f64, f64)> {
+    let mut hull: Vec<(f64, f64)> = Vec::new();
+    for &(x, y) in points {
+        let is_below = |two: &[(f64, f64)]| {
+            let [(ax, ay), (bx, by)] = [two[0], two[1]];
+            side * ((by - ay) * (x - ax) - (y - ay) * (bx - ax)) <= 0.0
+        };
+        while hull.len() > 1 && is_below(&hull[hull.len() - 2..]) {
+            hull.pop();
+        }
+        hull.push((x, y));
+    }
+    hull
 }
 
 /// Times `first + n * period`, and the window around each in which events are.
@@ -61,53 +68,53 @@ pub struct IdealTimes {
 impl IdealTimes {
     /// Those of events, at most `most` in a window, with a period near `trial_s`; `None` without gaps between the windows.
     pub fn of(at_s: &[f64], trial_s: f64, equal_s: f64, most: usize) -> Option<Self> {
-        let near = |at_s: &[f64]| {
-            let numbers = numbers(at_s, trial_s);
-            if numbers.windows(most + 1).any(|same| same[0] >= same[most]) {
-                return None;
-            }
-            let ideal = Self::narrowest(at_s, &numbers, equal_s)?;
-            (ideal.latest_s - ideal.earliest_s < ideal.period_s).then_some(ideal)
-        };
-        near(&at_s[..at_s.len().min(FEW)]).and_then(|_| near(at_s))
+        let numbers = numbers(at_s, trial_s);
+        if numbers.windows(most + 1).any(|same| same[0] >= same[most]) {
+            return None;
+        }
+        let ideal = Self::narrowest(at_s, &numbers, equal_s)?;
+        (ideal.latest_s - ideal.earliest_s < ideal.period_s).then_some(ideal)
     }
 
-    /// The narrowest windows of events with these numbers. Their width is a convex function of the period, whose minimum is
-    /// near the slope of a regression line.
+    /// The narrowest windows of events with these numbers: at the slope of an edge of their convex hull, as their width is a
+    /// convex function of the period, and linear between these slopes.
     fn narrowest(at_s: &[f64], numbers: &[f64], equal_s: f64) -> Option<Self> {
-        /// Each reduces the interval of the period by a third.
-        const STEPS: usize = 40;
         let (&begin_s, &from) = at_s.first().zip(numbers.first())?;
+        let later = at_s.iter().zip(numbers);
+        let points: Vec<(f64, f64)> = later.map(|(t, n)| (n - from, t - begin_s)).collect();
+        let hulls = [hull(&points, -1.0), hull(&points, 1.0)];
         let window = |period_s: f64| {
-            let later = at_s.iter().zip(numbers);
-            let later = later.map(|(time_s, n)| time_s - begin_s - (n - from) * period_s);
-            later.fold(
-                (f64::INFINITY, f64::NEG_INFINITY),
-                |(least, most), later_s| (least.min(later_s), most.max(later_s)),
-            )
+            let least_s = |side: f64, hull: &[(f64, f64)]| {
+                let later_s = hull
+                    .iter()
+                    .map(|(n, later_s)| side * (later_s - n * period_s));
+                side * later_s.fold(f64::INFINITY, f64::min)
+            };
+            (least_s(1.0, &hulls[0]), least_s(-1.0, &hulls[1]))
         };
-        let width_s = |period_s| {
-            let (earliest_s, latest_s) = window(period_s);
-            latest_s - earliest_s
-        };
-        let periods = numbers.last()? - from;
-        let mut period_s = slope(at_s, numbers);
-        if width_s(period_s) > equal_s {
-            let reach_s = 2.0 * width_s(period_s) / periods;
-            let (mut low_s, mut high_s) = (period_s - reach_s, period_s + reach_s);
-            for _ in 0..STEPS {
-                let third_s = (high_s - low_s) / 3.0;
-                if width_s(low_s + third_s) < width_s(high_s - third_s) {
-                    high_s -= third_s;
-                } else {
-                    low_s += third_s;
-                }
-            }
-            period_s = f64::midpoint(low_s, high_s);
+        let edges = hulls.iter().flat_map(|hull| hull.windows(2));
+        let slopes = edges.map(|two| (two[1].1 - two[0].1) / (two[1].0 - two[0].0));
+        let width_s = |period_s: f64| window(period_s).1 - window(period_s).0;
+        let sound = slopes.filter(|period_s| period_s.is_finite() && *period_s > 0.0);
+        let widths: Vec<(f64, f64)> = sound
+            .map(|period_s| (period_s, width_s(period_s)))
+            .collect();
+        let narrowest_s = widths
+            .iter()
+            .fold(f64::INFINITY, |least, of| least.min(of.1));
+        // Of several, the middle one.
+        let is_narrowest = |of: &&(f64, f64)| of.1 <= narrowest_s + EQUAL * equal_s;
+        let narrowest = widths.iter().filter(is_narrowest).map(|of| of.0);
+        let (low_s, high_s) = narrowest.fold((f64::INFINITY, 0.0_f64), |range, period_s| {
+            (range.0.min(period_s), range.1.max(period_s))
+        });
+        let period_s = f64::midpoint(low_s, high_s);
+        if !period_s.is_finite() {
+            return None;
         }
         let (earliest_s, latest_s) = window(period_s);
         let middle_s = f64::midpoint(earliest_s, latest_s);
-        (period_s > 0.0 && period_s.is_finite()).then_some(Self {
+        Some(Self {
             first_s: begin_s + middle_s,
             period_s,
             earliest_s: earliest_s - middle_s - equal_s,
@@ -122,24 +129,35 @@ impl IdealTimes {
         (self.earliest_s..=self.latest_s).contains(&later_s)
     }
 
+    /// Whether a row between the first and the last event is in no window.
+    pub fn excludes_a_row(&self, times_s: &[f64], at_s: &[f64]) -> bool {
+        let from = times_s.partition_point(|time_s| *time_s < at_s[0]);
+        let rows = times_s[from..]
+            .iter()
+            .take_while(|time_s| Some(*time_s) <= at_s.last());
+        rows.into_iter().any(|time_s| !self.contains(*time_s))
+    }
+
     /// Logarithm of the expected number of sets of windows that contain all of these events, if each row were a sample.
     ///
     /// Only rows within a period before an event may have one: at rest, a channel may have none.
     pub fn log_false_alarms(&self, times_s: &[f64], at_s: &[f64], evidence: usize) -> f64 {
         let before_s = (1.0 - EQUAL) * self.period_s;
-        let is_active = |row: &usize| {
-            let next = at_s.partition_point(|event_s| *event_s < times_s[*row]);
-            let event_s = at_s.get(next);
-            event_s.is_some_and(|event_s| *event_s < times_s[*row] + before_s)
-        };
+        let mut next = at_s.iter().peekable();
+        let is_active = times_s.iter().map(|time_s| {
+            while next.next_if(|event_s| *event_s < time_s).is_some() {}
+            next.peek()
+                .is_some_and(|event_s| **event_s < time_s + before_s)
+        });
+        let is_active: Vec<bool> = is_active.collect();
         let rows: Vec<usize> = (0..times_s.len())
             .filter(|&row| self.contains(times_s[row]))
             .collect();
         let step = |two: &[usize]| two[1] - two[0];
         let is_each_kth = rows.windows(3).all(|r| step(&r[..2]) == step(&r[1..]));
         let sets = if is_each_kth { 2.0 } else { 5.0 } * (times_s.len() as f64).ln();
-        let within = rows.iter().filter(|row| is_active(row)).count() as f64;
-        let all = (0..times_s.len()).filter(is_active).count() as f64;
+        let within = rows.iter().filter(|row| is_active[**row]).count() as f64;
+        let all = is_active.iter().filter(|active| **active).count() as f64;
         sets + evidence as f64 * (within / all).ln()
     }
 

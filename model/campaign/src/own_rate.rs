@@ -136,26 +136,39 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
+/// Longest period with gaps between its windows that has at most `most` of the events in each, s: between the first and the
+/// last of a few events there are so many windows that the periods without one of them are not longer than the time.
+fn longest_s(at_s: &[f64], most: usize) -> f64 {
+    let windows = (FEW - 1) / most - 1;
+    let spans = at_s
+        .windows(FEW)
+        .map(|few| (few[FEW - 1] - few[0]) / windows as f64);
+    spans.fold(f64::INFINITY, f64::min)
+}
+
 /// The samples whose events these are.
 fn of_events(rows: &Series, between: Between, events: Events) -> Option<OwnRate> {
     let times_s = &rows.times_s;
     let count = times_s.len();
     let step_s = median_step_s(times_s);
     let at_s: Vec<f64> = events.rows.iter().map(|&row| times_s[row]).collect();
-    // Even with windows of single rows, more events are needed at this period.
-    let most_s = (times_s[count - 1] - times_s[0]) / 10.0;
     // A corner between two rows is an event at both. Of several periods with the same windows the longest one has no
     // ideal time without an event; the windows of corners are the same only nearly, as some corners are small.
     let (most, same) = match between {
         Between::Held => (1, 0.0),
         Between::Lines => (2, 0.05),
     };
+    // Even with windows of single rows, more events are needed at longer periods.
+    let most_s = ((times_s[count - 1] - times_s[0]) / 10.0).min(longest_s(&at_s, most));
+    let few = &at_s[..at_s.len().min(FEW)];
     let mut best: Option<(f64, IdealTimes)> = None;
     let (mut last_s, mut least) = (0.0, f64::INFINITY);
     let mut trial_s = (times_s[count - 1] - times_s[0]) / (count - 1) as f64 * TRIAL_RATIO;
-    while events.evidence > 0 && trial_s < most_s {
-        let ideal = IdealTimes::of(&at_s, trial_s, step_s * EQUAL, most);
-        trial_s *= TRIAL_RATIO;
+    while events.evidence > 0 && trial_s < most_s * TRIAL_RATIO {
+        // More events make the windows only wider.
+        let first = IdealTimes::of(few, trial_s, step_s * EQUAL, most);
+        let first = first.filter(|first| first.excludes_a_row(times_s, few));
+        let ideal = first.and_then(|_| IdealTimes::of(&at_s, trial_s, step_s * EQUAL, most));
         // Several trials lead to the same period.
         if let Some(ideal) = ideal.filter(|ideal| ideal.period_s != last_s) {
             last_s = ideal.period_s;
@@ -165,6 +178,7 @@ fn of_events(rows: &Series, between: Between, events: Events) -> Option<OwnRate>
                 best = Some((alarms, ideal));
             }
         }
+        trial_s *= TRIAL_RATIO;
     }
     let (_, ideal) = best.filter(|(alarms, _)| *alarms < FALSE_ALARMS.ln())?;
     let samples = ideal.samples(rows, &events.rows, between);

@@ -430,7 +430,10 @@ impl SetBack {
 
 /// Where times are set back or stand still; nothing in times that rarely rise, which are no times of a run.
 fn set_back(times_s: &[f64]) -> Vec<SetBack> {
-    let pairs = times_s.windows(2).enumerate().filter(|_| rises(times_s));
+    if !rises(times_s) {
+        return Vec::new();
+    }
+    let pairs = times_s.windows(2).enumerate();
     let back = pairs.filter(|(_, pair)| pair[1] <= pair[0]);
     back.map(|(before, pair)| SetBack {
         row: before + 1,

@@ -2,93 +2,77 @@
 
 use hitch_plant::Channel;
 
-use crate::finding::{Evidence, Finding, Kind, common_or_single};
+use crate::finding::{Evidence, Finding, Kind, by_run};
 use crate::logs::{FAR, Logs, Open};
-use crate::statistics::{change, median, quantile};
+use crate::statistics::{change, median_of_several};
 
-/// Fewest samples beyond noise from which a sign is known: a delay of the flow leaves fewer at a change.
-const FEWEST: usize = 20;
 /// Least travel from which a direction is known, degrees: leakage at a valve's dead zone makes less.
 const LEAST_TRAVEL_DEG: f64 = 5.0;
 /// The valves, with the sign of flow and travel while they are open.
 const VALVES: [(Open, f64); 2] = [(Open::Lift, 1.0), (Open::Lower, -1.0)];
 
-/// The runs in which the flow has the wrong sign, or none.
-pub(crate) fn flow(logs: &Logs) -> Vec<Finding> {
-    let cure = "Log the flow with its sign, positive into the cylinder, or leave it out.";
-    report(logs, Kind::FlowSign, Channel::Flow, flow_with_valve, cure)
-}
-
-/// The runs in which the angle falls while only the lift valve is open, or rises while only the lowering valve is.
-pub(crate) fn angle(logs: &Logs) -> Vec<Finding> {
-    let cure = "Swap the ends of the angle's calibration, or the names of the two currents.";
-    report(
+/// The runs in which flow or angle have the wrong sign, or none if all have.
+pub(crate) fn findings(logs: &Logs) -> Vec<Finding> {
+    let flow = "Log the flow with its sign, positive into the cylinder, or leave it out.";
+    let angle = "Swap the ends of the angle's calibration, or the names of the two currents.";
+    let mut found = of(logs, Kind::FlowSign, Channel::Flow, flow_with_valve, flow);
+    let with_valve = travel_with_valve;
+    found.extend(of(
         logs,
         Kind::AngleSign,
         Channel::RockerAngle,
-        travel_with_valve,
-        cure,
-    )
+        with_valve,
+        angle,
+    ));
+    found
 }
 
-/// Median of the flow in the direction of the open valve, l/min: negative if nine tenths of it are against one of them.
+/// Median of the flow in the direction of the open valve, l/min; the smaller one of both valves.
 fn flow_with_valve(logs: &Logs, at: usize) -> Option<f64> {
     let values = logs.runs()[at].channel(Channel::Flow)?;
     let far = FAR * logs.noise_of(Channel::Flow);
     let of_valve = |(open, sign)| {
         let samples = logs.settled(at, open).into_iter().flatten();
-        let flows = samples
-            .map(|i| values[i] * sign)
-            .filter(|v: &f64| v.abs() > far);
-        let flows: Vec<f64> = flows.collect();
-        let against = quantile(flows.iter().copied(), 0.9) < 0.0;
-        let middle = median(flows.iter().copied());
-        (flows.len() >= FEWEST).then_some(if against { middle } else { middle.abs() })
+        let flows = samples.map(|i| values[i] * sign);
+        median_of_several(flows.filter(|lpm: &f64| lpm.abs() > far))
     };
     VALVES.into_iter().filter_map(of_valve).reduce(f64::min)
 }
 
-/// Travel in the direction of the open valve, degrees: negative if none follows its valve.
+/// Travel in the direction of the open valves, degrees.
 fn travel_with_valve(logs: &Logs, at: usize) -> Option<f64> {
     let values = logs.runs()[at].channel(Channel::RockerAngle)?;
-    let least = LEAST_TRAVEL_DEG.max(2.0 * FAR * logs.noise_of(Channel::RockerAngle));
-    let [lift, lower] = VALVES.map(|(open, sign)| {
+    let of_valve = |(open, sign): (Open, f64)| {
         let settled = logs.settled(at, open).into_iter();
         sign * settled.map(|stretch| change(&values[stretch])).sum::<f64>()
-    });
-    let travel = if lift.max(lower) > least {
-        lift.max(lower)
-    } else {
-        lift.min(lower)
     };
+    let travel: f64 = VALVES.into_iter().map(of_valve).sum();
+    let least = LEAST_TRAVEL_DEG.max(2.0 * FAR * logs.noise_of(Channel::RockerAngle));
     (travel.abs() > least).then_some(travel)
 }
 
-/// One finding for all runs if all that lower the hitch are wrong, else one for each.
-fn report(
+fn of(
     logs: &Logs,
     kind: Kind,
     channel: Channel,
     with_valve: fn(&Logs, usize) -> Option<f64>,
     cure: &str,
 ) -> Vec<Finding> {
-    let runs = 0..logs.runs().len();
-    let judged: Vec<(usize, f64)> = runs
-        .filter_map(|run| Some((run, with_valve(logs, run)?)))
-        .collect();
-    let lowers = |run: usize| !logs.settled(run, Open::Lower).is_empty();
-    let could_be = judged
-        .iter()
-        .filter(|(run, size)| *size < 0.0 || lowers(*run))
-        .count();
-    let wrong: Vec<(usize, f64)> = judged.into_iter().filter(|judged| judged.1 < 0.0).collect();
-    let (title, unit) = (channel.title(), channel.unit());
-    common_or_single(logs.campaign, &wrong, could_be, |size| {
-        let seen = format!(
-            "The {title} contradicts the open valve, by {:.1} {unit}.",
-            -size
-        );
-        let evidence = Evidence::of(size, 3.0 * logs.noise_of(channel), channel);
-        Finding::new(kind, evidence, seen, cure).of(channel.key())
-    })
+    // A magnitude without a sign is right while the hitch is lifted.
+    let lowers = |run| !logs.settled(run, Open::Lower).is_empty();
+    let shown = |run| with_valve(logs, run).filter(|value| *value < 0.0 || lowers(run));
+    by_run(
+        logs.campaign,
+        shown,
+        |value| value < 0.0,
+        |value| {
+            let (title, unit) = (channel.title(), channel.unit());
+            let seen = format!(
+                "The {title} contradicts the open valve, by {:.1} {unit}.",
+                -value
+            );
+            let evidence = Evidence::of(value, 3.0 * logs.noise_of(channel), channel);
+            Finding::new(kind, evidence, seen, cure).of(channel.key())
+        },
+    )
 }

@@ -138,16 +138,29 @@ impl Evidence {
     }
 }
 
-/// One finding of the median size if the fault is in all runs that could show it, else one for each run.
-pub(crate) fn common_or_single(
+/// The findings of the runs whose figure is wrong: one of its median if it is wrong in all of several runs that show it, else one for each.
+pub(crate) fn by_run(
     campaign: &Campaign,
-    wrong: &[(usize, f64)],
-    could_be: usize,
+    figure: impl Fn(usize) -> Option<f64>,
+    is_wrong: impl Fn(f64) -> bool,
     finding: impl Fn(f64) -> Finding,
 ) -> Vec<Finding> {
-    if wrong.len() > 1 && wrong.len() >= could_be {
-        return vec![finding(median(wrong.iter().map(|wrong| wrong.1)))];
+    let runs = 0..campaign.runs.len();
+    let shown: Vec<(usize, f64)> = runs.filter_map(|run| Some((run, figure(run)?))).collect();
+    let wrong = || shown.iter().filter(|shown| is_wrong(shown.1));
+    if shown.len() > 1 && wrong().count() == shown.len() {
+        return vec![finding(median(shown.iter().map(|shown| shown.1)))];
     }
-    let single = |&(run, size): &(usize, f64)| finding(size).in_run(campaign, run);
-    wrong.iter().map(single).collect()
+    wrong()
+        .map(|&(run, value)| finding(value).in_run(campaign, run))
+        .collect()
+}
+
+/// The findings in runs that no other finding names.
+pub(crate) fn unexplained(findings: Vec<Finding>, others: &[Finding]) -> Vec<Finding> {
+    let named = |finding: &Finding| others.iter().any(|other| other.run == finding.run);
+    findings
+        .into_iter()
+        .filter(|finding| !named(finding))
+        .collect()
 }

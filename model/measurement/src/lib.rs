@@ -8,7 +8,6 @@
 #![forbid(unsafe_code)]
 
 mod current_zero;
-mod dead_pressure;
 mod delay;
 mod direction;
 mod equal_samples;
@@ -28,54 +27,41 @@ mod statistics;
 pub use finding::{Evidence, Finding, Kind};
 
 use hitch_campaign::Campaign;
-use hitch_plant::Model;
+use hitch_plant::{Channel, Model};
 
+use crate::finding::unexplained;
 use crate::logs::Logs;
 
 /// Faults of the measurement of a campaign. With a model, loads and units follow from its weight at rest; without, from the other runs.
 #[must_use]
 pub fn check(campaign: &Campaign, model: Option<&Model>) -> Vec<Finding> {
     let logs = Logs::new(campaign, model);
-    let checks = [
+    let mut found = equal_samples::findings(&logs);
+    found.extend(spikes::findings(&logs, &found));
+    found.extend(pressures(&logs, &found));
+    let others = [
         current_zero::findings,
-        direction::flow,
-        direction::angle,
+        direction::findings,
         no_motion::findings,
         repeated_run::findings,
         delay::findings,
-        logger::temperature,
-        logger::ripple,
-        logger::interval,
-        logger::resolution,
+        logger::findings,
     ];
-    let equal = equal_samples::findings(&logs);
-    let spikes = spikes::findings(&logs, &equal);
-    let pressures = pressures(&logs);
-    let others = checks.iter().flat_map(|findings| findings(&logs));
-    pressures
-        .into_iter()
-        .chain(equal)
-        .chain(spikes)
-        .chain(others)
-        .collect()
+    found.extend(others.iter().flat_map(|findings| findings(&logs)));
+    found
 }
 
-/// Faults of the pressures. One that explains another comes first: exchanged sensors, a dead one, a unit, a load.
-fn pressures(logs: &Logs) -> Vec<Finding> {
+/// Faults of the pressures. One that explains another comes first: a range, exchanged sensors, a unit or a dead sensor, a load.
+fn pressures(logs: &Logs, equal: &[Finding]) -> Vec<Finding> {
+    let key = Some(Channel::CylinderPressure.key());
     let below = pump_below_cylinder::findings(logs);
+    let is_range = |finding: &Finding| finding.kind == Kind::Saturated && finding.channel == key;
     let exchanged = below.iter().any(|finding| finding.run.is_none());
-    if exchanged {
+    if exchanged || equal.iter().any(is_range) {
         return below;
     }
-    let mut found = dead_pressure::findings(logs);
-    found.extend(pressure_unit::findings(logs));
-    let known = |finding: &Finding| found.iter().any(|other| other.run == finding.run);
-    let below: Vec<Finding> = below
-        .into_iter()
-        .filter(|finding| !known(finding))
-        .collect();
-    found.extend(below);
-    let loads = load::findings(logs, &found);
-    found.extend(loads);
+    let mut found = pressure_unit::findings(logs);
+    found.extend(unexplained(below, &found));
+    found.extend(load::findings(logs, &found));
     found
 }

@@ -10,19 +10,17 @@ const RISE_S: f64 = 0.2;
 /// The settled samples in which only the lift valve is open and the flow is positive; without a flow, the angle rises.
 pub(crate) fn lifting(logs: &Logs, at: usize) -> Vec<usize> {
     let run = &logs.runs()[at];
-    let samples = logs.settled(at, Open::Lift).into_iter().flatten();
-    if let Some(flow) = run.channel(Channel::Flow) {
-        let far = FAR * logs.noise_of(Channel::Flow);
-        return samples.filter(|&i| flow[i] > far).collect();
-    }
-    let Some(angle) = run.channel(Channel::RockerAngle) else {
-        return Vec::new();
-    };
-    let (far, behind) = (
-        FAR * logs.noise_of(Channel::RockerAngle),
-        logs.samples(at, RISE_S),
+    let behind = logs.samples(at, RISE_S);
+    let far = |channel| FAR * logs.noise_of(channel);
+    let (flow, angle) = (
+        run.channel(Channel::Flow),
+        run.channel(Channel::RockerAngle),
     );
-    samples
-        .filter(|&i| i >= behind && angle[i] - angle[i - behind] > far)
-        .collect()
+    let lifts = |i: usize| match (flow, angle) {
+        (Some(flow), _) => flow[i] > far(Channel::Flow),
+        (_, Some(angle)) if i >= behind => angle[i] - angle[i - behind] > far(Channel::RockerAngle),
+        _ => false,
+    };
+    let samples = logs.settled(at, Open::Lift).into_iter().flatten();
+    samples.filter(|&i| lifts(i)).collect()
 }

@@ -13,6 +13,8 @@ pub(crate) const SHUT_A: f64 = 0.3;
 pub(crate) const FAR: f64 = 6.0;
 /// Time after a change of the currents in which hydraulics settle, s; ringing with soft oil lasts about as long.
 pub(crate) const SETTLING_S: f64 = 0.4;
+/// Pressure, bar, that the zero of a sensor may have.
+pub(crate) const ZERO_BAR: f64 = 1.0;
 /// Least noise of a logged current, A: its usual resolution.
 const LEAST_CURRENT_NOISE_A: f64 = 0.003;
 
@@ -56,8 +58,7 @@ impl<'a> Logs<'a> {
             campaign.noise.lower_current_a,
         ];
         let current_noise_a = stated.map(|s| s.unwrap_or(0.0).max(LEAST_CURRENT_NOISE_A));
-        let step = Channel::ALL.map(|channel| smallest_step(campaign, channel));
-        let noise = Channel::ALL.map(|channel| channel_noise(campaign, channel, step));
+        let noise_and_step = Channel::ALL.map(|channel| noise_and_step(campaign, channel));
         let level = |run: &Run| {
             let of =
                 |current: usize| lowest_level(currents(run)[current], current_noise_a[current]);
@@ -66,8 +67,8 @@ impl<'a> Logs<'a> {
         Self {
             campaign,
             model,
-            noise,
-            step,
+            noise: noise_and_step.map(|both| both.0),
+            step: noise_and_step.map(|both| both.1),
             current_noise_a,
             level_a: campaign.runs.iter().map(level).collect(),
         }
@@ -101,27 +102,30 @@ impl<'a> Logs<'a> {
 
     /// Which valve has a current at a sample. A standing current below 0.3 A, which is the same throughout the run, is none.
     pub fn open(&self, run: usize, at: usize) -> Open {
-        let flows = |current: usize| {
-            let base_a = self.level_a[run][current];
-            let base_a = if base_a < SHUT_A { base_a } else { 0.0 };
-            let above_a = currents(&self.runs()[run])[current][at] - base_a;
-            (
-                above_a > FAR * self.current_noise_a[current],
-                above_a > SHUT_A,
-            )
-        };
-        match (flows(0), flows(1)) {
-            ((false, _), (false, _)) => Open::Neither,
-            ((_, true), (false, _)) => Open::Lift,
-            ((false, _), (_, true)) => Open::Lower,
+        let [lift_a, lower_a] = [0, 1].map(|current| {
+            let standing_a = Some(self.level_a[run][current]).filter(|level_a| *level_a < SHUT_A);
+            currents(&self.runs()[run])[current][at] - standing_a.unwrap_or(0.0)
+        });
+        let far_a = self.current_noise_a.map(|sigma_a| FAR * sigma_a);
+        let shut = [lift_a <= far_a[0], lower_a <= far_a[1]];
+        match shut {
+            [true, true] => Open::Neither,
+            [false, true] if lift_a > SHUT_A => Open::Lift,
+            [true, false] if lower_a > SHUT_A => Open::Lower,
             _ => Open::Unclear,
         }
     }
 
-    /// The stretches of a run in which the same valve is open, without the time in which the hydraulics settle.
+    /// The stretches of a run in which the same valve is open.
+    pub fn stretches(&self, run: usize, open: Open) -> Vec<Range<usize>> {
+        let count = self.runs()[run].time_s.len();
+        stretches(count, 2, |at| self.open(run, at) == open)
+    }
+
+    /// The same, without the time in which the hydraulics settle.
     pub fn settled(&self, run: usize, open: Open) -> Vec<Range<usize>> {
-        let (count, settling) = (self.runs()[run].time_s.len(), self.samples(run, SETTLING_S));
-        let mut found = stretches(count, 2, |at| self.open(run, at) == open);
+        let settling = self.samples(run, SETTLING_S);
+        let mut found = self.stretches(run, open);
         for stretch in found.iter_mut().filter(|stretch| stretch.start > 0) {
             stretch.start += settling;
         }
@@ -159,36 +163,17 @@ fn lowest_level(values: &[f64], noise_a: f64) -> f64 {
     median(values.iter().copied().filter(near))
 }
 
-fn logged(campaign: &Campaign, channel: Channel) -> impl Iterator<Item = &[f64]> {
-    campaign
-        .runs
-        .iter()
-        .filter_map(move |run| run.channel(channel))
-}
-
-fn channel_noise(campaign: &Campaign, channel: Channel, step: [f64; 4]) -> f64 {
-    let stated = campaign.noise.of(channel);
-    let sigma = stated.unwrap_or_else(|| noise(logged(campaign, channel)));
-    let rounding = step[channel.index()] / 12f64.sqrt();
-    if sigma.is_finite() {
-        sigma.max(rounding)
-    } else {
-        rounding
-    }
-}
-
-/// Smallest difference of two values of a channel; zero without a difference.
-fn smallest_step(campaign: &Campaign, channel: Channel) -> f64 {
+/// Noise and smallest step of a channel, in its unit; NaN and zero without samples.
+fn noise_and_step(campaign: &Campaign, channel: Channel) -> (f64, f64) {
     /// Differences below this share of the range are rounding of the numbers.
     const ROUNDING: f64 = 1e-7;
-    let values = sorted(logged(campaign, channel).flatten().copied());
-    let range = values
-        .last()
-        .zip(values.first())
-        .map_or(0.0, |(high, low)| high - low);
+    let logged = || campaign.runs.iter().filter_map(|run| run.channel(channel));
+    let values = sorted(logged().flatten().copied());
+    let (low, high) = extremes(&values);
     let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
-    let least = steps
-        .filter(|step| *step > ROUNDING * range)
-        .fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 0.0 }
+    let steps = steps.filter(|step| *step > ROUNDING * (high - low));
+    let step = steps.reduce(f64::min).unwrap_or(0.0);
+    let stated = campaign.noise.of(channel);
+    let sigma = stated.unwrap_or_else(|| noise(logged()));
+    (sigma.max(step / 12f64.sqrt()), step)
 }

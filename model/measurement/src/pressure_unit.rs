@@ -1,12 +1,13 @@
-//! Runs whose pressures are in another unit.
+//! Runs whose cylinder pressure is in another unit, or stays near zero.
 
-use hitch_campaign::Bench;
+use hitch_campaign::{Bench, Run};
 use hitch_plant::Channel;
 
-use crate::finding::{Evidence, Finding, Kind};
-use crate::logs::Logs;
+use crate::finding::{Evidence, Finding, Kind, by_run, unexplained};
+use crate::lifting::lifting;
+use crate::logs::{FAR, Logs, ZERO_BAR};
 use crate::rest_pressure::{Line, rests};
-use crate::statistics::median;
+use crate::statistics::median_of_several;
 
 /// Units as multiples of a bar, and what they are when bar is expected.
 const UNITS: [(f64, &str); 6] = [
@@ -17,58 +18,71 @@ const UNITS: [(f64, &str); 6] = [
     (0.068_95, "bar converted from psi twice"),
     (0.01, "bar converted from kPa twice"),
 ];
-/// Least pressure, bar, of a flow bench whose ratio is known in spite of a sensor's zero.
-const LEAST_PORT_BAR: f64 = 4.0;
 /// Ratio by which friction and zeros may change a pressure at rest; the units are further apart.
 const TOLERANCE: f64 = 1.3;
 
-/// The runs in another unit, with their index.
+/// The runs with a wrong pressure.
 pub(crate) fn findings(logs: &Logs) -> Vec<Finding> {
-    let (rests, line) = rests(logs);
-    let line = line.filter(|line| unit(line.slope).is_none() || logs.model.is_none());
-    let line = line.or_else(|| {
-        logs.model.map(|_| Line {
-            zero_bar: 0.0,
-            slope: 1.0,
-            spread_bar: 0.0,
-        })
-    });
-    let of_rest = rests
-        .iter()
-        .filter_map(|rest| Some((rest.run, rest.best.measured_bar / line?.bar(&rest.best))));
-    let of_port = (0..logs.runs().len()).filter_map(|run| Some((run, port_ratio(logs, run)?)));
-    let wrong = of_rest
-        .chain(of_port)
-        .filter_map(|(run, ratio)| Some((run, ratio, unit(ratio)?)));
-    let finding = |(run, ratio, name): (usize, f64, &str)| {
-        let seen = format!(
-            "The cylinder pressure is {ratio:.3} times that of the weight, by the other runs, or of the port: it is in {name}, not bar."
-        );
-        let cure = "State the unit of the column for this run in [run.columns].";
-        let evidence = Evidence::new(ratio, (TOLERANCE - 1.0) * ratio, "");
-        let finding = Finding::new(Kind::PressureUnit, evidence, seen, cure);
-        finding
-            .in_run(logs.campaign, run)
-            .of(Channel::CylinderPressure.key())
+    let pressures = pressures(logs);
+    // That of the median of several samples is a third of theirs.
+    let zero_bar = ZERO_BAR + FAR / 3.0 * logs.noise_of(Channel::CylinderPressure);
+    let is_dead = |bar: f64| bar.abs() <= zero_bar;
+    let lifted = |run: usize| {
+        let (bar, expected_bar) = pressures[run]?;
+        let is_far = expected_bar / TOLERANCE > 2.0 * zero_bar;
+        (is_far && !lifting(logs, run).is_empty()).then_some(bar)
     };
-    wrong.map(finding).collect()
+    let ratio = |run: usize| pressures[run].map(|(bar, expected_bar)| bar / expected_bar);
+    let units = by_run(logs.campaign, ratio, |ratio| unit(ratio).is_some(), in_unit);
+    if units.iter().any(|finding| finding.run.is_none()) {
+        return units;
+    }
+    let mut found = by_run(logs.campaign, lifted, is_dead, near_zero);
+    found.extend(unexplained(units, &found));
+    found
 }
 
-/// Measured pressure of a flow bench by that of its port.
-fn port_ratio(logs: &Logs, run: usize) -> Option<f64> {
-    let log = &logs.runs()[run];
-    let Bench::Flow { port_pressure_bar } = log.bench else {
-        return None;
+/// Cylinder pressure of each run, and that of its weight or its port, bar.
+fn pressures(logs: &Logs) -> Vec<Option<(f64, f64)>> {
+    let rests = rests(logs);
+    let line = logs
+        .model
+        .map(|_| Line::WEIGHT)
+        .or_else(|| Line::through(&rests));
+    let of_run = |(at, run): (usize, &Run)| match run.bench {
+        Bench::Hitch { .. } => {
+            let best = rests.iter().find(|rest| rest.run == at)?.best(&line?);
+            Some((best.measured_bar, line?.bar(&best)))
+        }
+        Bench::Flow { port_pressure_bar } => {
+            let pressure = run.channel(Channel::CylinderPressure)?;
+            let bar = median_of_several(pressure.iter().copied())?;
+            let is_known = port_pressure_bar * (TOLERANCE - 1.0) > ZERO_BAR;
+            is_known.then_some((bar, port_pressure_bar))
+        }
     };
-    let pressure = log.channel(Channel::CylinderPressure)?;
-    (port_pressure_bar >= LEAST_PORT_BAR)
-        .then(|| median(pressure.iter().copied()) / port_pressure_bar)
+    logs.runs().iter().enumerate().map(of_run).collect()
+}
+
+fn near_zero(bar: f64) -> Finding {
+    let seen = format!("The cylinder pressure is {bar:.2} bar while the hitch is lifted.");
+    let cure = "Check the sensor, its supply and its column; leave the channel of this run out.";
+    let evidence = Evidence::new(bar, ZERO_BAR, "bar");
+    Finding::new(Kind::DeadPressure, evidence, seen, cure).of(Channel::CylinderPressure.key())
+}
+
+fn in_unit(ratio: f64) -> Finding {
+    let name = unit(ratio).unwrap_or("another unit");
+    let seen = format!(
+        "The cylinder pressure is {ratio:.3} times that of the weight or of the port: it is in {name}, not bar."
+    );
+    let cure = "State the unit of the column for this run in [run.columns].";
+    let evidence = Evidence::new(ratio, (TOLERANCE - 1.0) * ratio, "");
+    Finding::new(Kind::PressureUnit, evidence, seen, cure).of(Channel::CylinderPressure.key())
 }
 
 /// Name of the unit with about this multiple of a bar.
 fn unit(ratio: f64) -> Option<&'static str> {
-    let near = |(factor, _): &&(f64, &str)| {
-        (ratio / factor).max(factor / ratio) < TOLERANCE && ratio > 0.0
-    };
+    let near = |unit: &&(f64, &str)| (1.0 / TOLERANCE..TOLERANCE).contains(&(ratio / unit.0));
     UNITS.iter().find(near).map(|unit| unit.1)
 }

@@ -3,7 +3,7 @@
 use hitch_plant::Channel;
 
 use crate::finding::{Evidence, Finding, Kind};
-use crate::logs::{FAR, Logs, Open};
+use crate::logs::{FAR, Logs, SETTLING_S};
 use crate::statistics::{median, noise};
 
 /// Deviation of a spike in sigma: three times what noise reaches, as pressures dip when a valve moves.
@@ -13,17 +13,13 @@ const SIDE: usize = 3;
 
 /// The spikes of each channel of each run, except of channels whose samples are equal in stretches: they jump at their ends.
 pub(crate) fn findings(logs: &Logs, equal: &[Finding]) -> Vec<Finding> {
-    let runs = 0..logs.runs().len();
     let jumps = |channel: &Channel| equal.iter().any(|of| of.channel == Some(channel.key()));
     let channels = Channel::ALL.into_iter().filter(|channel| !jumps(channel));
-    let channels: Vec<Channel> = channels.collect();
-    let channels = &channels;
-    runs.flat_map(|run| {
-        channels
-            .iter()
-            .filter_map(move |&channel| of_channel(logs, run, channel))
-    })
-    .collect()
+    let of_runs = |channel| {
+        let runs = 0..logs.runs().len();
+        runs.filter_map(move |run| of_channel(logs, run, channel))
+    };
+    channels.flat_map(of_runs).collect()
 }
 
 fn of_channel(logs: &Logs, at: usize, channel: Channel) -> Option<Finding> {
@@ -31,33 +27,23 @@ fn of_channel(logs: &Logs, at: usize, channel: Channel) -> Option<Finding> {
     let values = run.channel(channel)?;
     // Chatter of a valve, or another unit, makes the noise of a single run larger.
     let sigma = logs.noise_of(channel).max(noise([values]));
-    let open = [Open::Neither, Open::Lift, Open::Lower].into_iter();
-    let settled = open.flat_map(|open| logs.settled(at, open));
-    let mut spikes: Vec<(usize, f64)> = settled
-        .flat_map(|stretch| stretch.start + SIDE..stretch.end.saturating_sub(SIDE))
+    let settling = logs.samples(at, SETTLING_S);
+    let spikes = (SIDE..values.len().saturating_sub(SIDE))
         .filter_map(|i| height(values, i, sigma).map(|height| (i, height)))
-        .filter(|&(i, _)| logs.currents_constant(at, i - SIDE..i + SIDE + 1))
-        .collect();
-    spikes.sort_by_key(|spike| spike.0);
+        .filter(|&(i, _)| logs.currents_constant(at, i.saturating_sub(settling)..i + SIDE + 1));
+    let spikes: Vec<(usize, f64)> = spikes.collect();
     let (first, last) = (spikes.first()?.0, spikes.last()?.0);
-    let largest = spikes
-        .iter()
-        .map(|spike| spike.1)
-        .max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+    let higher = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+    let largest = spikes.iter().map(|spike| spike.1).fold(0.0, higher);
     let (title, unit, count) = (channel.title(), channel.unit(), spikes.len());
-    let (samples, lie) = if count == 1 {
-        ("sample", "lies")
-    } else {
-        ("samples", "lie")
-    };
     let seen = format!(
-        "{count} single {samples} of the {title} {lie} off both sides, by {largest:+.2} {unit} at most, at constant currents."
+        "Single samples of the {title} lie off both sides at constant currents: {count}, by {largest:+.2} {unit} at most."
     );
     let cure = "Find the loose contact or the disturbance, and empty these cells in the log.";
     let evidence = Evidence::of(largest, 3.0 * sigma, channel);
+    let finding = Finding::new(Kind::Spikes, evidence, seen, cure).in_run(logs.campaign, at);
     Some(
-        Finding::new(Kind::Spikes, evidence, seen, cure)
-            .in_run(logs.campaign, at)
+        finding
             .of(channel.key())
             .between(run.time_s[first], run.time_s[last]),
     )

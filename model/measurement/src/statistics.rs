@@ -26,6 +26,13 @@ pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     quantile(values, 0.5)
 }
 
+/// The median of so many values that its error is below a third of their standard deviation; `None` of fewer.
+pub(crate) fn median_of_several(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    const SEVERAL: usize = 20;
+    let values: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
+    (values.len() >= SEVERAL).then(|| median(values))
+}
+
 /// Robust standard deviation about a value, in the unit of the values.
 pub(crate) fn spread_about(values: impl IntoIterator<Item = f64>, centre: f64) -> f64 {
     SIGMA_PER_MAD * median(values.into_iter().map(|v| (v - centre).abs()))
@@ -38,10 +45,12 @@ pub(crate) fn change(values: &[f64]) -> f64 {
     first.map_or(0.0, |first| known.next_back().unwrap_or(first) - first)
 }
 
-/// Standard deviation of white noise on a smooth signal, from its second differences, whose variance is six times that of the noise.
+/// Standard deviation of white noise on a smooth signal, from its second differences, whose variance is six times that of the noise. Three
+/// equal samples do not show it.
 pub(crate) fn noise<'a>(series: impl IntoIterator<Item = &'a [f64]>) -> f64 {
-    let second = |s: &'a [f64]| s.windows(3).map(|w| w[0] - 2.0 * w[1] + w[2]);
-    spread_about(series.into_iter().flat_map(second), 0.0) / 6f64.sqrt()
+    let windows = series.into_iter().flat_map(|series| series.windows(3));
+    let varied = windows.filter(|w| w[0] != w[1] || w[1] != w[2]);
+    spread_about(varied.map(|w| w[0] - 2.0 * w[1] + w[2]), 0.0) / 6f64.sqrt()
 }
 
 /// The stretches of consecutive samples for which a condition holds, with at least `fewest` samples.
@@ -62,12 +71,4 @@ pub(crate) fn stretches(
         from = at + 1;
     }
     found
-}
-
-/// Samples of a stretch of equal ones that is not chance: twice as many as one of ten thousand campaigns of `samples` samples has, in which
-/// this share of all pairs is equal, as noise may be slow, and at least twelve.
-pub(crate) fn longest_by_chance(equal_share: f64, samples: usize) -> usize {
-    const FALSE_ALARMS: f64 = 1e-4;
-    let pairs = (samples as f64 / FALSE_ALARMS).ln() / -equal_share.max(1e-3).ln();
-    (2.0 * pairs.ceil()).max(12.0) as usize
 }
