@@ -62,7 +62,7 @@ fn rounded(rate_hz: f64) -> f64 {
 /// The samples of a channel with a lower rate than its rows; `None` if all rows are samples, or if that is not refuted.
 pub fn own_rate(series: &Series) -> Option<OwnRate> {
     let known = (0..series.values.len()).filter(|&row| series.values[row].is_finite());
-    let rows = series.rows(known);
+    let rows = distinct(&series.rows(known));
     let rises = rows.times_s.windows(2).all(|two| two[1] > two[0]);
     if !rises || rows.times_s.len() < FEW {
         return None;
@@ -70,6 +70,23 @@ pub fn own_rate(series: &Series) -> Option<OwnRate> {
     let resolution = resolution(&rows.values);
     let held = of_events(&rows, Between::Held, held_events(&rows, resolution));
     held.or_else(|| of_events(&rows, Between::Lines, corners(&rows, resolution)))
+}
+
+/// The rows without those whose time is that of the row before them but for its rounding. A union of the time stamps of two clocks, as
+/// asammdf makes it, has rows at 0.3 s and at 0.30000000000000004 s.
+fn distinct(rows: &Series) -> Series {
+    let least_s = EQUAL * median_step_s(&rows.times_s);
+    let mut last_s = f64::NEG_INFINITY;
+    let is_apart = |row: &usize| {
+        let step_s = rows.times_s[*row] - last_s;
+        // Times that fall are kept: they are no rows of one clock.
+        let is_apart = !(0.0..least_s).contains(&step_s);
+        if is_apart {
+            last_s = rows.times_s[*row];
+        }
+        is_apart
+    };
+    rows.rows((0..rows.times_s.len()).filter(is_apart))
 }
 
 /// Rows at which the course of a channel changes, and how many of them are evidence.
@@ -268,6 +285,27 @@ mod tests {
 
     fn base_s(rows: usize) -> Vec<f64> {
         (0..rows).map(|row| row as f64 * 0.02).collect()
+    }
+
+    /// The union of two clocks has rows at times that are equal but for their rounding.
+    #[test]
+    fn rows_of_one_instant_are_one() {
+        let noise = noise(7, 200);
+        let slow_s: Vec<f64> = (0..200).map(|n| f64::from(n) * 0.1).collect();
+        let fast_s = (0..991).map(|row| f64::from(row) * 0.02);
+        let mut times_s: Vec<f64> = fast_s.chain(slow_s.iter().copied().take(199)).collect();
+        times_s.sort_by(f64::total_cmp);
+        times_s.dedup();
+        assert!(times_s.windows(2).any(|two| two[1] - two[0] < 1e-12));
+        let value = |time_s: f64| {
+            let n = ((time_s / 0.1 + 1e-9) as usize).min(198);
+            let share = (time_s - slow_s[n]) / 0.1;
+            noise[n] + share * (noise[n + 1] - noise[n])
+        };
+        let values = times_s.iter().map(|&time_s| value(time_s)).collect();
+        let own = own_rate(&series(times_s, values)).expect("a lower rate");
+        assert_eq!(own.between, Between::Lines);
+        assert!((own.rate_hz - 10.0).abs() < 0.01, "{}", own.rate_hz);
     }
 
     proptest! {

@@ -46,11 +46,15 @@ pub(crate) fn change(values: &[f64]) -> f64 {
 }
 
 /// Standard deviation of white noise on a smooth signal, from its second differences, whose variance is six times that of the noise. Three
-/// equal samples do not show it.
+/// equal samples do not show it. A slow channel has no value in most rows.
 pub(crate) fn noise<'a>(series: impl IntoIterator<Item = &'a [f64]>) -> f64 {
-    let windows = series.into_iter().flat_map(|series| series.windows(3));
-    let varied = windows.filter(|w| w[0] != w[1] || w[1] != w[2]);
-    spread_about(varied.map(|w| w[0] - 2.0 * w[1] + w[2]), 0.0) / 6f64.sqrt()
+    let differences = series.into_iter().flat_map(|series| {
+        let known: Vec<f64> = series.iter().copied().filter(|v| v.is_finite()).collect();
+        let varied = known.windows(3).filter(|w| w[0] != w[1] || w[1] != w[2]);
+        let differences = varied.map(|w| w[0] - 2.0 * w[1] + w[2]);
+        differences.collect::<Vec<f64>>()
+    });
+    spread_about(differences, 0.0) / 6f64.sqrt()
 }
 
 /// The stretches of consecutive samples for which a condition holds, with at least `fewest` samples.

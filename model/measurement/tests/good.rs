@@ -17,6 +17,23 @@ fn good_campaigns_have_no_finding() {
     }
 }
 
+#[test]
+fn a_channel_of_a_lower_rate_has_no_finding() {
+    for folder in folders() {
+        let mut campaign = Campaign::load(&folder).expect("a campaign");
+        for run in &mut campaign.runs {
+            let slow = run.channels.iter_mut().flatten().skip(1);
+            for value in slow.flat_map(|values| values.iter_mut().enumerate()) {
+                if value.0 % 5 != 0 {
+                    *value.1 = f64::NAN;
+                }
+            }
+        }
+        let found = check(&campaign, None);
+        assert!(found.is_empty(), "{}: {found:#?}", folder.display());
+    }
+}
+
 /// The demonstration, and the campaigns of the acceptance tests: soft oil, friction, rough ground, leakage, air.
 fn folders() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
