@@ -16,8 +16,9 @@ use crate::timings;
 const PROGRAM: &str = "hitch-workbench";
 
 /// What the crates of the program serve.
-const SERVES: [(&str, &str); 6] = [
+const SERVES: [(&str, &str); 7] = [
     ("hitch-campaign", "all that read logs"),
+    ("hitch-ecu", "`ecu`, `record`, `flash-calibration`, `serve`"),
     (
         "hitch-ecu-host",
         "`ecu`, `record`, `flash-calibration`, `serve`",
@@ -73,7 +74,8 @@ pub fn run() -> Result<()> {
     println!(
         "\n| dependency | of | serves | packages | s of one core | MB of libraries |\n|---|---|---|---|---|---|"
     );
-    for row in &rows {
+    let (own, shared): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.packages > 0);
+    for row in own {
         let serves = |user: &String| SERVES.iter().find(|(name, _)| name == user);
         let served: BTreeSet<&str> = row
             .users
@@ -94,6 +96,8 @@ pub fn run() -> Result<()> {
             row.megabytes
         );
     }
+    let shared: BTreeSet<&str> = shared.iter().map(|row| row.name.as_str()).collect();
+    println!("\nShared with others: {}.", join(&shared));
     Ok(())
 }
 
