@@ -1,10 +1,8 @@
 //! Formats that a build may leave out, as their readers take a third of its time.
 
-use std::fs::File;
-use std::io::Read as _;
 use std::path::Path;
 
-use hitch_input::file_kind::{is_mdf, is_parquet};
+use hitch_input::file_kind::{first_bytes, is_mdf, is_parquet};
 use hitch_input::source_file::SourceFile;
 
 use crate::recorded::CampaignError;
@@ -14,16 +12,23 @@ use crate::recorded::CampaignError;
 /// # Errors
 /// It is of such a format.
 pub fn check(path: &Path) -> Result<(), CampaignError> {
-    let mut bytes = [0; 16];
-    let is_long = File::open(path).is_ok_and(|mut file| file.read_exact(&mut bytes).is_ok());
-    let (format, feature) = match &bytes {
-        bytes if !cfg!(feature = "mdf") && is_mdf(bytes) => ("MDF", "mdf"),
-        bytes if !cfg!(feature = "parquet") && is_parquet(bytes) => ("Parquet", "parquet"),
-        _ => return Ok(()),
-    };
-    if !is_long {
+    let formats = [
+        (
+            "MDF",
+            "mdf",
+            cfg!(feature = "mdf"),
+            is_mdf as fn(&[u8]) -> bool,
+        ),
+        ("Parquet", "parquet", cfg!(feature = "parquet"), is_parquet),
+    ];
+    let is_one =
+        |is_format: fn(&[u8]) -> bool| first_bytes(path).is_some_and(|bytes| is_format(&bytes));
+    let left_out = formats
+        .into_iter()
+        .find(|(_, _, is_read, is_format)| !is_read && is_one(*is_format));
+    let Some((format, feature, ..)) = left_out else {
         return Ok(());
-    }
+    };
     let what = format!("is {format}, which this build of hitch does not read");
     let hint = format!("build hitch with `--features {feature}`, or export the log as CSV");
     Err(SourceFile::named(path).error(what, hint))

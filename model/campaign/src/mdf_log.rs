@@ -1,14 +1,12 @@
 //! Logs of measurement tools in MDF, versions 3 and 4 (ASAM): CANape, INCA, CANedge, asammdf and others.
 
 use std::collections::{HashMap, HashSet};
-use std::fs::File;
-use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
 use falcon_mdf::mdf3::Mdf3File;
 use falcon_mdf::{Channel, Mf4File};
-use hitch_input::file_kind;
+use hitch_input::file_kind::{self, first_bytes};
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::source_file::SourceFile;
 use hitch_mdf_file::{Recording, unit_of_conversion};
@@ -29,13 +27,6 @@ pub fn is_mdf(path: &Path) -> bool {
     let is_named =
         end.is_some_and(|end| ["mf4", "mdf", "dat"].contains(&&*end.to_ascii_lowercase()));
     is_named && first_bytes(path).is_some_and(|bytes| file_kind::is_mdf(&bytes))
-}
-
-fn first_bytes(path: &Path) -> Option<[u8; 16]> {
-    let mut bytes = [0; 16];
-    let mut file = File::open(path).ok()?;
-    file.read_exact(&mut bytes).ok()?;
-    Some(bytes)
 }
 
 /// An open file.

@@ -1,5 +1,9 @@
 //! Identification of binary files by their first bytes.
 
+use std::fs::File;
+use std::io::Read as _;
+use std::path::Path;
+
 /// Number of bytes that are examined.
 const LOOKED_AT: usize = 4096;
 
@@ -71,6 +75,14 @@ pub fn is_blf(bytes: &[u8]) -> bool {
 /// Whether a file that begins with `bytes` is a MAT file of version 5, 6 or 7.
 pub fn is_mat(bytes: &[u8]) -> bool {
     bytes.starts_with(b"MATLAB 5.0")
+}
+
+/// The first bytes of a file; `None` if it is shorter or cannot be read.
+pub fn first_bytes(path: &Path) -> Option<[u8; 16]> {
+    let mut bytes = [0; 16];
+    let mut file = File::open(path).ok()?;
+    file.read_exact(&mut bytes).ok()?;
+    Some(bytes)
 }
 
 /// Whether a file that begins with `bytes` is Parquet.
