@@ -179,8 +179,11 @@ impl Lock {
                 .filter(|name| seconds.contains_key(**name))
                 .copied()
                 .collect();
-            let sum =
-                |of: &BTreeMap<String, f64>| only.iter().filter_map(|name| of.get(*name)).sum();
+            let sum = |of: &BTreeMap<String, f64>| {
+                only.iter()
+                    .filter_map(|name| of.get(*name))
+                    .fold(0.0, |sum, one| sum + one)
+            };
             Row {
                 name: dependency.clone(),
                 users,

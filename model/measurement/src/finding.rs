@@ -77,7 +77,7 @@ pub struct Finding {
     pub evidence: Evidence,
     /// What is seen, one sentence.
     pub seen: String,
-    /// What cures it, one sentence.
+    /// Suggested correction, one sentence.
     pub cure: String,
 }
 

@@ -1,7 +1,7 @@
 //! What the logs of a campaign show about its measurement: arithmetic alone, before any physics is named.
 //!
-//! [`check`] returns a [`Finding`] for each fault: its kind, run, channel and time, its size, and its cure. Every threshold follows
-//! from the noise of a channel, the count of samples, or the physics.
+//! [`check`] returns a [`Finding`] for each fault: its kind, run, channel and time, its size, and its correction. A threshold
+//! follows from the noise of a channel, the count of samples or the physics where its comment derives it; the others are choices.
 //!
 //! From the bottom layer to the top: robust statistics; the finding; the logs with their noise and the stretches in which a valve
 //! is open; the checks, one kind a file.

@@ -226,7 +226,7 @@ async fn events(
         let message = loop {
             match messages.recv().await {
                 Ok(message) => break message,
-                // A tab that is too far behind has missed messages; the state that it asks for at the end has all of it.
+                // A slow tab loses messages. The state that it requests at the end contains their results.
                 Err(RecvError::Lagged(_)) => {}
                 Err(RecvError::Closed) => return None,
             }

@@ -1,7 +1,8 @@
 //! `hitch explain`: finds and adds missing effects until no further one is significant.
 
-use hitch_measurement::check;
 use std::path::{Path, PathBuf};
+
+use hitch_measurement::check;
 
 use crate::commands::fleet::FleetArgs;
 use crate::commands::next_folder::NextFolder;
